@@ -1,0 +1,1 @@
+"""The command line: one click verb a file."""

@@ -1,0 +1,1 @@
+"""What can be proved of a shape; one analysis a file."""

@@ -1,0 +1,1 @@
+"""The field graph: arithmetic in a point, with many meanings."""

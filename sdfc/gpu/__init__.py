@@ -1,0 +1,1 @@
+"""Devices, programs and frames; knows nothing of scenes."""

@@ -1,0 +1,1 @@
+"""A second way in: the flattened CSG that OpenSCAD writes."""

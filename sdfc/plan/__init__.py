@@ -1,0 +1,1 @@
+"""Which technique is legal for each part, and which is chosen."""

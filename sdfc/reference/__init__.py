@@ -1,0 +1,1 @@
+"""Float64: certified first roots, and the renderer for machines without OpenGL."""

@@ -1,0 +1,1 @@
+"""The shape graph: the scene as meant."""

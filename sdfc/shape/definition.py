@@ -1,0 +1,147 @@
+"""What a primitive or a distance operation says about itself: parameters, formula, claims.
+
+Definitions come from `field` declarations, the standard library's and a user's alike (DESIGN 2, "one formula, many meanings").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import TypeAlias
+
+from sdfc.diagnostics import Span
+from sdfc.field.graph import Expr
+
+Argument: TypeAlias = "Expr | tuple[Expr, ...]"  # a value, or a list of values (the corners of a polygon)
+Environment: TypeAlias = Mapping[str, Argument]
+
+
+class Kind(Enum):
+    """What a parameter takes."""
+
+    NUMBER = "number"
+    LENGTH = "length"
+    ANGLE = "angle"
+    COUNT = "count"  # a whole number
+    BOOLEAN = "boolean"
+    VECTOR2 = "vector2"
+    VECTOR3 = "vector3"
+    POINT2 = "point2"  # a vector of lengths
+    POINT3 = "point3"
+    NUMBERS = "numbers"  # lists
+    POINTS2 = "points2"
+    POINTS3 = "points3"
+    SOLID = "solid"  # a child in space
+    PROFILE = "profile"  # a child in the plane
+
+    @property
+    def is_child(self) -> bool:
+        return self in (Kind.SOLID, Kind.PROFILE)
+
+    @property
+    def is_list(self) -> bool:
+        return self in (Kind.NUMBERS, Kind.POINTS2, Kind.POINTS3)
+
+    @property
+    def is_length(self) -> bool:
+        """Whether values scale with the scene."""
+        return self in (Kind.LENGTH, Kind.POINT2, Kind.POINT3, Kind.POINTS2, Kind.POINTS3)
+
+
+class Exactness(Enum):
+    """How a field relates to the distance (ALGORITHMS C1)."""
+
+    EXACT = "exact"
+    EXACT_OUTSIDE = "exact outside"
+    EXACT_INSIDE = "exact inside"
+    BOUND = "bound"
+    NONE = "none"  # not a bound until divided by its Lipschitz constant
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of a definition. `minimum` holds component by component; `above` says that it is excluded."""
+
+    name: str
+    kind: Kind
+    default: Callable[[Environment], Argument] | None = None  # may use earlier parameters
+    minimum: float | None = None
+    above: bool = False
+    maximum: float | None = None
+    below: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ChildFacts:
+    """What a claim may ask of a child: its box (at the level asked for) and its Lipschitz constant."""
+
+    lo: Expr
+    hi: Expr
+    lipschitz: Expr
+
+
+Box: TypeAlias = tuple[Expr, Expr]
+Interval: TypeAlias = tuple[Expr, Expr]
+Distance: TypeAlias = Callable[[Expr], Expr]  # a child: its value at a point
+
+
+@dataclass(frozen=True, slots=True)
+class Claims:
+    """What is claimed of a definition; each is tested for every entry of the standard library.
+
+    For an operation, `exactness` and `convex` say what is kept of its children: EXACT keeps the child's class,
+    anything else is the best class that the result can have; `convex` means convex when every child is.
+    """
+
+    exactness: Exactness = Exactness.NONE
+    convex: bool = False
+    # f(s p; s lengths) = s f(p; lengths): dimensionally consistent, so that a scale goes into the parameters
+    homogeneous: bool = False
+    # the Lipschitz constant; for an operation it may use its children's
+    lipschitz: Callable[[Environment, Mapping[str, ChildFacts]], Expr] | None = None
+    # the box of {f <= level} from parameters, level and the children's boxes at (level + lowering)
+    bounds: Callable[[Environment, Mapping[str, ChildFacts], Expr], Box] | None = None
+    # whether `bounds` used the level itself; where not, an exact-outside field's box is widened by the level
+    bounds_use_level: bool = False
+    # a function with the same zero set, whose {gauge <= g} is what `ray` intersects; default: the formula
+    gauge: Callable[[Expr, Environment], Expr] | None = None
+    # the parameter intervals where the line o + t d (d of any length) is in {gauge <= grow}: (o, d, grow, environment);
+    # an interval with enter >= exit is empty; several are sorted and disjoint
+    ray: Callable[[Expr, Expr, Expr, Environment], tuple[Interval, ...]] | None = None
+    # an operation's value is at least min(children) - lowering, and space is not moved
+    lowering: Callable[[Environment], Expr] | None = None
+    # complement(this(a, b)) = dual(complement a, complement b)
+    dual: str | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Definition:
+    """One `field` declaration. Identity is equality: a scene uses one object for one declaration.
+
+    `formula(p, environment, children)`: the value at the point `p` (VEC3, or VEC2 in the plane); `children` maps each
+    SOLID or PROFILE parameter to a function from a point to the child's value there.
+    """
+
+    name: str
+    doc: str
+    dimension: int  # 3 in space, 2 in the plane: of the point p
+    parameters: tuple[Parameter, ...]
+    formula: Callable[[Expr, Environment, Mapping[str, Distance]], Expr]
+    claims: Claims
+    span: Span
+    is_standard: bool = False
+    # (condition, message): the condition over the parameters must hold
+    requirements: tuple[tuple[Callable[[Environment], Expr], str], ...] = field(default=())
+
+    @property
+    def children(self) -> tuple[Parameter, ...]:
+        return tuple(p for p in self.parameters if p.kind.is_child)
+
+    @property
+    def values(self) -> tuple[Parameter, ...]:
+        return tuple(p for p in self.parameters if not p.kind.is_child)
+
+    @property
+    def is_primitive(self) -> bool:
+        return not self.children

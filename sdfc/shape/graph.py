@@ -1,0 +1,225 @@
+"""The shape graph: a scene as meant. Interned nodes, no names, no loops; values are expressions over constants and params."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import TypeAlias, TypeVar
+
+from sdfc.diagnostics import Span
+from sdfc.field.graph import Expr
+from sdfc.shape.definition import Argument, Definition
+from sdfc.shape.material import Material
+from sdfc.shape.matrix import Matrix
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Node:
+    """What every node has. Equal means identical: only ShapeGraph makes nodes."""
+
+    id: int
+    span: Span  # of the first place that asked for it; not part of what makes nodes equal
+    dimension: int  # 3 in space, 2 in the plane
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Apply(Node):
+    """A definition with its arguments: a primitive where there are no children, else a distance operation.
+
+    `arguments` go with `definition.values`, `children` with `definition.children`, in order.
+    """
+
+    definition: Definition
+    arguments: tuple[Argument, ...] = field(repr=False)
+    children: tuple[Shape, ...] = field(repr=False)
+
+    @property
+    def environment(self) -> dict[str, Argument]:
+        return {p.name: a for p, a in zip(self.definition.values, self.arguments, strict=True)}
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Affine(Node):
+    """The child moved by an affine map. Its field is that of the child at `inverse(p)`, times the map's smallest stretch."""
+
+    forward: Matrix = field(repr=False)
+    inverse: Matrix = field(repr=False)
+    child: Shape = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Union(Node):
+    children: tuple[Shape, ...] = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Intersection(Node):
+    children: tuple[Shape, ...] = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Complement(Node):
+    child: Shape = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Paint(Node):
+    """The child's parts that have no material yet get this one."""
+
+    material: Material
+    child: Shape = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Nothing(Node):
+    """The empty solid: what a scene is in which nothing remains."""
+
+
+Shape: TypeAlias = Apply | Affine | Union | Intersection | Complement | Paint | Nothing
+Combination = TypeVar("Combination", Union, Intersection)
+
+
+def children_of(shape: Shape) -> tuple[Shape, ...]:
+    match shape:
+        case Apply() | Union() | Intersection():
+            return shape.children
+        case Affine() | Complement() | Paint():
+            return (shape.child,)
+        case Nothing():
+            return ()
+
+
+class ShapeGraph:
+    """All shapes of one compilation; equal shapes are one node."""
+
+    def __init__(self) -> None:
+        self._nodes: dict[tuple[object, ...], Shape] = {}
+        self._count = 0
+
+    def __len__(self) -> int:
+        return self._count
+
+    def _next(self) -> int:
+        self._count += 1
+        return self._count
+
+    def apply(
+        self,
+        definition: Definition,
+        arguments: Iterable[Argument],
+        children: Iterable[Shape],
+        span: Span,
+    ) -> Shape:
+        values, parts = tuple(arguments), tuple(children)
+        ids = tuple(tuple(e.id for e in a) if isinstance(a, tuple) else a.id for a in values)
+        key = ("apply", id(definition), ids, tuple(c.id for c in parts))
+        return self._nodes.get(key) or self._nodes.setdefault(
+            key,
+            Apply(
+                id=self._next(),
+                span=span,
+                dimension=definition.dimension,
+                definition=definition,
+                arguments=values,
+                children=parts,
+            ),
+        )
+
+    def affine(self, forward: Matrix, inverse: Matrix, child: Shape, span: Span) -> Shape:
+        key = ("affine", forward.key, inverse.key, child.id)
+        return self._nodes.get(key) or self._nodes.setdefault(
+            key,
+            Affine(
+                id=self._next(), span=span, dimension=child.dimension, forward=forward, inverse=inverse, child=child
+            ),
+        )
+
+    def _combine(
+        self, kind: type[Combination], children: tuple[Shape, ...], span: Span, dimension: int | None
+    ) -> Shape:
+        if not children:
+            return self.nothing(span, dimension or 3)
+        key = (kind.__name__, tuple(c.id for c in children))
+        return self._nodes.get(key) or self._nodes.setdefault(
+            key, kind(id=self._next(), span=span, dimension=children[0].dimension, children=children)
+        )
+
+    def union(self, children: Iterable[Shape], span: Span, dimension: int | None = None) -> Shape:
+        return self._combine(Union, tuple(children), span, dimension)
+
+    def intersection(self, children: Iterable[Shape], span: Span, dimension: int | None = None) -> Shape:
+        return self._combine(Intersection, tuple(children), span, dimension)
+
+    def complement(self, child: Shape, span: Span) -> Shape:
+        key = ("complement", child.id)
+        return self._nodes.get(key) or self._nodes.setdefault(
+            key, Complement(id=self._next(), span=span, dimension=child.dimension, child=child)
+        )
+
+    def difference(self, first: Shape, rest: Iterable[Shape], span: Span) -> Shape:
+        """`first` without any of `rest`."""
+        return self.intersection((first, *(self.complement(r, r.span) for r in rest)), span)
+
+    def paint(self, material: Material, child: Shape, span: Span) -> Shape:
+        key = ("paint", id(material), child.id)
+        return self._nodes.get(key) or self._nodes.setdefault(
+            key, Paint(id=self._next(), span=span, dimension=child.dimension, material=material, child=child)
+        )
+
+    def nothing(self, span: Span, dimension: int = 3) -> Shape:
+        key = ("nothing", dimension)
+        return self._nodes.get(key) or self._nodes.setdefault(
+            key, Nothing(id=self._next(), span=span, dimension=dimension)
+        )
+
+    def with_children(self, shape: Shape, children: tuple[Shape, ...]) -> Shape:
+        """The same node over other children (the node itself where they are the same)."""
+        if all(a is b for a, b in zip(children, children_of(shape), strict=True)):
+            return shape
+        match shape:
+            case Apply():
+                return self.apply(shape.definition, shape.arguments, children, shape.span)
+            case Affine():
+                return self.affine(shape.forward, shape.inverse, children[0], shape.span)
+            case Union():
+                return self.union(children, shape.span)
+            case Intersection():
+                return self.intersection(children, shape.span)
+            case Complement():
+                return self.complement(children[0], shape.span)
+            case Paint():
+                return self.paint(shape.material, children[0], shape.span)
+            case Nothing():
+                return shape
+
+
+def topological(root: Shape) -> Iterator[Shape]:
+    """Every node below the root, children before parents, each once. Iterative: depth is no limit."""
+    done: set[int] = set()
+    stack: list[tuple[Shape, bool]] = [(root, False)]
+    while stack:
+        node, expanded = stack.pop()
+        if node.id in done:
+            continue
+        if expanded:
+            done.add(node.id)
+            yield node
+        else:
+            stack.append((node, True))
+            stack.extend((c, False) for c in reversed(children_of(node)) if c.id not in done)
+
+
+__all__ = [
+    "Affine",
+    "Apply",
+    "Complement",
+    "Intersection",
+    "Node",
+    "Nothing",
+    "Paint",
+    "Shape",
+    "ShapeGraph",
+    "Union",
+    "children_of",
+    "topological",
+]

@@ -1,0 +1,112 @@
+"""Affine maps whose entries are expressions, so that a `param` may turn or move a part."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sdfc.field.graph import Expr, FieldGraph, Op, Operand
+
+Row = tuple[Expr, Expr, Expr]
+
+
+@dataclass(frozen=True, slots=True)
+class Matrix:
+    """p -> linear p + offset, in space. In the plane the third row and column are the identity's."""
+
+    linear: tuple[Row, Row, Row]
+    offset: Row
+
+    @property
+    def key(self) -> tuple[int, ...]:
+        return tuple(e.id for row in (*self.linear, self.offset) for e in row)
+
+    @property
+    def entries(self) -> tuple[Expr, ...]:
+        return tuple(e for row in (*self.linear, self.offset) for e in row)
+
+    @property
+    def is_constant(self) -> bool:
+        return all(e.is_constant for e in self.entries)
+
+    def after(self, first: Matrix) -> Matrix:
+        """The map that does `first`, then this one."""
+        rows = [_combine(row, first.linear) for row in self.linear]
+        moved = self.point(first.offset)
+        return Matrix((rows[0], rows[1], rows[2]), moved)
+
+    def point(self, p: Row) -> Row:
+        """The image of a point given by components."""
+        x, y, z = (_dot(row, p) + shift for row, shift in zip(self.linear, self.offset, strict=True))
+        return x, y, z
+
+    def apply(self, p: Expr) -> Expr:
+        """The image of a point (VEC3 or VEC2)."""
+        graph = p.graph
+        if p.type.size == 2:
+            x, y, _ = self.point((p[0], p[1], graph.constant(0.0)))
+            return graph.vector(x, y)
+        return graph.vector(*self.point((p[0], p[1], p[2])))
+
+    def direction(self, d: Expr) -> Expr:
+        """The image of a direction: without the offset."""
+        graph = d.graph
+        if d.type.size == 2:
+            row: Row = (d[0], d[1], graph.constant(0.0))
+            return graph.vector(*(_dot(r, row) for r in self.linear[:2]))
+        return graph.vector(*(_dot(r, (d[0], d[1], d[2])) for r in self.linear))
+
+
+def _dot(a: Row, b: Row) -> Expr:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _combine(row: Row, matrix: tuple[Row, Row, Row]) -> Row:
+    x, y, z = (_dot(row, (matrix[0][j], matrix[1][j], matrix[2][j])) for j in range(3))
+    return x, y, z
+
+
+def matrix(graph: FieldGraph, rows: list[list[Operand]], offset: list[Operand]) -> Matrix:
+    """A matrix from nested lists of numbers or expressions (3x3 and 3)."""
+    linear = tuple((graph.lift(a), graph.lift(b), graph.lift(c)) for a, b, c in rows)
+    x, y, z = (graph.lift(o) for o in offset)
+    return Matrix((linear[0], linear[1], linear[2]), (x, y, z))
+
+
+def identity(graph: FieldGraph) -> Matrix:
+    return scaling(graph, 1.0, 1.0, 1.0)
+
+
+def scaling(graph: FieldGraph, x: Operand, y: Operand, z: Operand) -> Matrix:
+    return matrix(graph, [[x, 0, 0], [0, y, 0], [0, 0, z]], [0, 0, 0])
+
+
+def translation(graph: FieldGraph, x: Operand, y: Operand, z: Operand) -> Matrix:
+    return matrix(graph, [[1, 0, 0], [0, 1, 0], [0, 0, 1]], [x, y, z])
+
+
+def rotation(graph: FieldGraph, axis: int, angle: Expr) -> Matrix:
+    """By `angle` (radians) about a coordinate axis (0, 1, 2), counter-clockwise seen from its tip."""
+    c, s = graph.add(Op.COS, angle), graph.add(Op.SIN, angle)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    rows: list[list[Operand]] = [[1.0 if r == k else 0.0 for k in range(3)] for r in range(3)]
+    rows[i][i], rows[i][j], rows[j][i], rows[j][j] = c, -s, s, c
+    return matrix(graph, rows, [0, 0, 0])
+
+
+def transposed(m: Matrix) -> Matrix:
+    """The linear part's transpose, without offset: the inverse of a rotation."""
+    zero = m.offset[0].graph.constant(0.0)
+    columns = [(m.linear[0][j], m.linear[1][j], m.linear[2][j]) for j in range(3)]
+    return Matrix((columns[0], columns[1], columns[2]), (zero, zero, zero))
+
+
+def inverse(m: Matrix) -> Matrix:
+    """The inverse map by the adjugate; its entries are not finite where the map is singular."""
+    graph = m.offset[0].graph
+    a, b, c = (graph.vector(*row) for row in m.linear)
+    determinant = graph.dot(a, graph.cross(b, c))
+    columns = [graph.cross(b, c) / determinant, graph.cross(c, a) / determinant, graph.cross(a, b) / determinant]
+    rows = [(columns[0][i], columns[1][i], columns[2][i]) for i in range(3)]
+    linear = (rows[0], rows[1], rows[2])
+    back = [-_dot(row, m.offset) for row in linear]
+    return Matrix(linear, (back[0], back[1], back[2]))

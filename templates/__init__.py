@@ -1,0 +1,1 @@
+"""The GLSL templates, as package data."""
