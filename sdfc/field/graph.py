@@ -5,81 +5,19 @@ Scalars and vectors mix as in GLSL: a FLOAT with a vector works component by com
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from enum import Enum
 from typing import TypeAlias
 
-
-class Type(Enum):
-    """The type of an expression; the value is its number of components (0 for a boolean)."""
-
-    BOOL = 0
-    FLOAT = 1
-    VEC2 = 2
-    VEC3 = 3
-    VEC4 = 4
-
-    @property
-    def size(self) -> int:
-        return max(1, self.value)
-
-
-class Op(Enum):
-    """Every operation of the field graph. Each interpretation has a row for every one of them (tested)."""
-
-    # leaves; Expr.value says which
-    CONST = "const"  # value: tuple of floats, or (True,)/(False,) for a boolean
-    INPUT = "input"  # value: a name: p (the point), o and d (a ray), a function's parameter, ...
-    PARAM = "param"  # value: the name of a live `param` of the scene (a uniform)
-    # vectors
-    VECTOR = "vector"  # args: 2 to 4 scalars
-    SWIZZLE = "swizzle"  # value: tuple of 1 to 4 indices
-    DOT = "dot"
-    LENGTH = "length"
-    # component by component
-    NEG = "neg"
-    ABS = "abs"
-    SIGN = "sign"
-    FLOOR = "floor"
-    ROUND = "round"
-    SQRT = "sqrt"
-    SIN = "sin"
-    COS = "cos"
-    TAN = "tan"
-    ASIN = "asin"
-    ACOS = "acos"
-    ATAN = "atan"
-    EXP = "exp"
-    LOG = "log"
-    ADD = "add"
-    SUB = "sub"
-    MUL = "mul"
-    DIV = "div"
-    MIN = "min"
-    MAX = "max"
-    MOD = "mod"  # a - b * floor(a / b), as in GLSL
-    POW = "pow"
-    ATAN2 = "atan2"  # atan2(y, x)
-    # booleans (scalars only)
-    LESS = "less"
-    LESS_EQUAL = "less_equal"
-    EQUAL = "equal"
-    AND = "and"
-    OR = "or"
-    NOT = "not"
-    SELECT = "select"  # select(condition, then, else)
-
-
-UNARY = frozenset(
-    {Op.NEG, Op.ABS, Op.SIGN, Op.FLOOR, Op.ROUND, Op.SQRT, Op.SIN, Op.COS, Op.TAN, Op.ASIN, Op.ACOS, Op.ATAN}
-    | {Op.EXP, Op.LOG}
-)
-BINARY = frozenset({Op.ADD, Op.SUB, Op.MUL, Op.DIV, Op.MIN, Op.MAX, Op.MOD, Op.POW, Op.ATAN2})
-COMPARISON = frozenset({Op.LESS, Op.LESS_EQUAL, Op.EQUAL})
-LOGIC = frozenset({Op.AND, Op.OR, Op.NOT})
-LEAVES = frozenset({Op.CONST, Op.INPUT, Op.PARAM})
+from sdfc.field.folding import fold
+from sdfc.field.operations import BINARY as BINARY
+from sdfc.field.operations import COMPARISON as COMPARISON
+from sdfc.field.operations import LEAVES as LEAVES
+from sdfc.field.operations import LOGIC as LOGIC
+from sdfc.field.operations import UNARY as UNARY
+from sdfc.field.operations import Op as Op
+from sdfc.field.operations import Type as Type
+from sdfc.field.simplify import simplify
 
 Value: TypeAlias = tuple[float, ...] | tuple[int, ...] | str | None
 Number: TypeAlias = float | int
@@ -154,7 +92,7 @@ class Expr:
 
 
 class FieldGraph:
-    """All expressions of one compilation. Equal expressions are one node; constants fold in float64 as they are added."""
+    """All expressions of one compilation. Equal expressions are one node; constants fold in float64 as they come."""
 
     def __init__(self) -> None:
         self._nodes: dict[tuple[object, ...], Expr] = {}
@@ -195,12 +133,12 @@ class FieldGraph:
     def add(self, op: Op, *args: Expr, value: Value = None) -> Expr:
         """The node for `op(args)`, folded or simplified where that is exact."""
         if not all(a.op is Op.CONST for a in args):
-            simple = _simplify(self, op, args, value)
+            simple = simplify(self, op, args, value)
             if simple is not None:
                 return simple
         type_ = _result_type(op, args, value)
         if args and all(a.op is Op.CONST for a in args):
-            folded = _fold(op, [a.numbers for a in args], type_.size, value)
+            folded = fold(op, [a.numbers for a in args], type_.size, value)
             return self._intern(Op.CONST, type_, (), folded)
         return self._intern(op, type_, args, value)
 
@@ -258,153 +196,16 @@ def _result_type(op: Op, args: Sequence[Expr], value: Value) -> Type:
             return max((a.type for a in args), key=lambda t: t.value)
 
 
-def _simplify(graph: FieldGraph, op: Op, args: tuple[Expr, ...], value: Value) -> Expr | None:
-    """An equal, simpler node, or None. Only rewrites that are exact in real arithmetic for finite values."""
-
-    def zero(e: Expr) -> bool:
-        return e.op is Op.CONST and not any(e.numbers)
-
-    def one(e: Expr) -> bool:
-        return e.op is Op.CONST and e.type is not Type.BOOL and all(v == 1.0 for v in e.numbers)
-
-    def same_size(e: Expr, other: Expr) -> bool:
-        return e.type.value >= other.type.value
-
-    match op, args:
-        case Op.ADD, (a, b):
-            if zero(b) and same_size(a, b):
-                return a
-            if zero(a) and same_size(b, a):
-                return b
-        case Op.SUB, (a, b):
-            if zero(b) and same_size(a, b):
-                return a
-            if zero(a) and same_size(b, a):
-                return graph.add(Op.NEG, b)
-        case Op.MUL, (a, b):
-            if one(b) and same_size(a, b):
-                return a
-            if one(a) and same_size(b, a):
-                return b
-            if zero(a) or zero(b):
-                return graph.constant(*([0.0] * max(a.type.size, b.type.size)))
-        case Op.DIV, (a, b) if one(b) and same_size(a, b):
-            return a
-        case Op.NEG, (a,) if a.op is Op.NEG:
-            return a.args[0]
-        case (Op.MIN | Op.MAX), (a, b) if a is b:
-            return a
-        case Op.SELECT, (condition, a, b):
-            if a is b:
-                return a
-            if condition.op is Op.CONST and a.type is b.type:
-                return a if condition.numbers[0] else b
-        case Op.AND, (a, b):
-            if a.op is Op.CONST:
-                return b if a.numbers[0] else a
-            if b.op is Op.CONST:
-                return a if b.numbers[0] else b
-        case Op.OR, (a, b):
-            if a.op is Op.CONST:
-                return a if a.numbers[0] else b
-            if b.op is Op.CONST:
-                return b if b.numbers[0] else a
-        case Op.SWIZZLE, (a,):
-            assert isinstance(value, tuple)
-            if value == tuple(range(a.type.size)):
-                return a
-            if a.op is Op.VECTOR:
-                picked = [a.args[int(i)] for i in value]
-                return picked[0] if len(picked) == 1 else graph.add(Op.VECTOR, *picked)
-            if a.op is Op.SWIZZLE:
-                assert isinstance(a.value, tuple)
-                return graph.swizzle(a.args[0], tuple(int(a.value[int(i)]) for i in value))
-        case Op.VECTOR, (first, *rest):
-            whole = first.args[0] if first.op is Op.SWIZZLE else None
-            if whole is not None and whole.type.size == len(args):
-                parts = [a for a in args if a.op is Op.SWIZZLE and a.args[0] is whole]
-                if len(parts) == len(args) and [a.value for a in parts] == [(i,) for i in range(len(args))]:
-                    return whole
-    return None
+def arguments(node: Expr) -> Sequence[Expr]:
+    """The arguments of a node: what `topological` follows unless told otherwise."""
+    return node.args
 
 
-def _guarded(function: Callable[..., float]) -> Callable[..., float]:
-    """IEEE behaviour for what Python's math raises on: infinities and NaN are reported by the caller, with a place."""
+def topological(roots: Iterable[Expr], below: Callable[[Expr], Sequence[Expr]] = arguments) -> Iterator[Expr]:
+    """Every node below the roots, arguments before users, the first argument first, each once.
 
-    def call(*values: float) -> float:
-        try:
-            return function(*values)
-        except ZeroDivisionError:
-            return math.inf if values[0] > 0 else -math.inf if values[0] < 0 else math.nan
-        except OverflowError:
-            return math.inf
-        except ValueError:
-            return math.nan
-
-    return call
-
-
-def _sign(x: float) -> float:
-    return float((x > 0) - (x < 0))
-
-
-_SCALAR: dict[Op, Callable[..., float]] = {
-    Op.NEG: lambda a: -a,
-    Op.ABS: abs,
-    Op.SIGN: _sign,
-    Op.FLOOR: lambda a: float(math.floor(a)),
-    Op.ROUND: lambda a: float(math.floor(a + 0.5)),
-    Op.SQRT: math.sqrt,
-    Op.SIN: math.sin,
-    Op.COS: math.cos,
-    Op.TAN: math.tan,
-    Op.ASIN: math.asin,
-    Op.ACOS: math.acos,
-    Op.ATAN: math.atan,
-    Op.EXP: math.exp,
-    Op.LOG: math.log,
-    Op.ADD: lambda a, b: a + b,
-    Op.SUB: lambda a, b: a - b,
-    Op.MUL: lambda a, b: a * b,
-    Op.DIV: lambda a, b: a / b,
-    Op.MIN: min,
-    Op.MAX: max,
-    Op.MOD: lambda a, b: a - b * math.floor(a / b),
-    Op.POW: math.pow,
-    Op.ATAN2: math.atan2,
-    Op.LESS: lambda a, b: float(a < b),
-    Op.LESS_EQUAL: lambda a, b: float(a <= b),
-    Op.EQUAL: lambda a, b: float(a == b),
-    Op.AND: lambda a, b: float(bool(a) and bool(b)),
-    Op.OR: lambda a, b: float(bool(a) or bool(b)),
-    Op.NOT: lambda a: float(not a),
-}
-
-
-def _fold(op: Op, args: list[tuple[float, ...]], size: int, value: Value) -> tuple[float, ...]:
-    def component(values: tuple[float, ...], index: int) -> float:
-        return values[index] if len(values) > 1 else values[0]
-
-    match op:
-        case Op.VECTOR:
-            return tuple(a[0] for a in args)
-        case Op.SWIZZLE:
-            assert isinstance(value, tuple)
-            return tuple(args[0][int(i)] for i in value)
-        case Op.DOT:
-            return (math.fsum(a * b for a, b in zip(args[0], args[1], strict=True)),)
-        case Op.LENGTH:
-            return (math.hypot(*args[0]),)
-        case Op.SELECT:
-            chosen = args[1] if args[0][0] else args[2]
-            return tuple(component(chosen, i) for i in range(size))
-        case _:
-            function = _guarded(_SCALAR[op])
-            return tuple(function(*(component(a, i) for a in args)) for i in range(size))
-
-
-def topological(roots: Iterable[Expr]) -> Iterator[Expr]:
-    """Every node below the roots, arguments before users, each once. Iterative: depth is no limit."""
+    Iterative: depth is no limit. `below` may leave arguments out or put them in another order.
+    """
     done: set[int] = set()
     stack: list[tuple[Expr, bool]] = [(root, False) for root in reversed(list(roots))]
     while stack:
@@ -416,7 +217,7 @@ def topological(roots: Iterable[Expr]) -> Iterator[Expr]:
             yield node
         else:
             stack.append((node, True))
-            stack.extend((a, False) for a in node.args if a.id not in done)
+            stack.extend((a, False) for a in reversed(below(node)) if a.id not in done)
 
 
 def substitute(root: Expr, replace: dict[Expr, Expr]) -> Expr:

@@ -1,1 +1,1 @@
-"""Devices, programs and frames; knows nothing of scenes."""
+"""Running GLSL: an offscreen device, programs, frames. Knows nothing of scenes."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from sdfc.field.graph import Expr, FieldGraph, Op, Operand
@@ -42,14 +43,31 @@ class Matrix:
     def apply(self, p: Expr) -> Expr:
         """The image of a point (VEC3 or VEC2)."""
         graph = p.graph
+        scale = self._uniform_scale()
+        if scale is not None:  # reads better than components: (p - centre) * scale
+            size = p.type.size
+            centre = graph.vector(*(-shift / scale for shift in self.offset[:size]))
+            return (p - centre) * scale
         if p.type.size == 2:
             x, y, _ = self.point((p[0], p[1], graph.constant(0.0)))
             return graph.vector(x, y)
         return graph.vector(*self.point((p[0], p[1], p[2])))
 
+    def _uniform_scale(self) -> Expr | None:
+        """k where the linear part is k times the identity."""
+        k = self.linear[0][0]
+        for i, row in enumerate(self.linear):
+            for j, entry in enumerate(row):
+                if entry is not k if i == j else not (entry.is_constant and entry.number == 0.0):
+                    return None
+        return k
+
     def direction(self, d: Expr) -> Expr:
         """The image of a direction: without the offset."""
         graph = d.graph
+        scale = self._uniform_scale()
+        if scale is not None:
+            return d * scale
         if d.type.size == 2:
             row: Row = (d[0], d[1], graph.constant(0.0))
             return graph.vector(*(_dot(r, row) for r in self.linear[:2]))
@@ -86,11 +104,23 @@ def translation(graph: FieldGraph, x: Operand, y: Operand, z: Operand) -> Matrix
 
 def rotation(graph: FieldGraph, axis: int, angle: Expr) -> Matrix:
     """By `angle` (radians) about a coordinate axis (0, 1, 2), counter-clockwise seen from its tip."""
-    c, s = graph.add(Op.COS, angle), graph.add(Op.SIN, angle)
+    c, s = _cosine_and_sine(angle)
     i, j = (axis + 1) % 3, (axis + 2) % 3
     rows: list[list[Operand]] = [[1.0 if r == k else 0.0 for k in range(3)] for r in range(3)]
     rows[i][i], rows[i][j], rows[j][i], rows[j][j] = c, -s, s, c
     return matrix(graph, rows, [0, 0, 0])
+
+
+def _cosine_and_sine(angle: Expr) -> tuple[Expr, Expr]:
+    """Exact for constant quarter turns, where pi rounds."""
+    graph = angle.graph
+    if angle.is_constant:
+        quarters = angle.number / (0.5 * math.pi)
+        nearest = round(quarters) if math.isfinite(quarters) else 0
+        if abs(quarters - nearest) < 1e-13 * max(1.0, abs(quarters)):
+            c, s = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[nearest % 4]
+            return graph.constant(c), graph.constant(s)
+    return graph.add(Op.COS, angle), graph.add(Op.SIN, angle)
 
 
 def transposed(m: Matrix) -> Matrix:

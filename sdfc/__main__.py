@@ -1,0 +1,5 @@
+"""`python -m sdfc`."""
+
+from sdfc.cli import main
+
+main()

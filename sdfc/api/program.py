@@ -1,0 +1,191 @@
+"""A compiled scene: what it renders to, its GLSL, and what the compiler found out about it."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+from warnings import warn
+
+from sdfc.api.renderer import GlRenderer, Progress, Renderer, Shot
+from sdfc.api.request import (
+    Setting,
+    View,
+    checked_names,
+    checked_params,
+    checked_samples,
+    checked_size,
+)
+from sdfc.api.source import Input, Kind, from_path, from_text, looks_like_path
+from sdfc.diagnostics import DeviceError, Diagnostic
+from sdfc.image.picture import AOVS, Image
+
+if TYPE_CHECKING:
+    from sdfc.image.picture import Array
+    from sdfc.pipeline import Compiled
+    from sdfc.scene.model import Param, Scene
+
+BACKENDS = ("auto", "gl", "cpu")
+DEFAULT_SIZE = (1280, 720)
+DEFAULT_TRACER = "proven"
+
+
+class Program:
+    """A scene, compiled. Keeps its OpenGL device and programs between renders; `close` (or `with`) gives them back."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self._compiled: dict[str, Compiled] = {}
+        self._renderers: dict[str, Renderer] = {}
+        self._close = weakref.finalize(self, _close_all, self._renderers)
+
+    @property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """What is odd about the scene, but not wrong."""
+        return self.scene.warnings
+
+    @property
+    def params(self) -> tuple[Param, ...]:
+        """The live values: what `render(params=...)` may set."""
+        return self.scene.params
+
+    def compiled(self, tracer: str = DEFAULT_TRACER) -> Compiled:
+        """The compiler's result for a tracer, made once."""
+        if tracer not in self._compiled:
+            from sdfc import pipeline
+
+            (tracer,) = checked_names("tracer", (tracer,), pipeline.tracer_names())
+            self._compiled[tracer] = pipeline.compile_scene(self.scene, pipeline.Options(tracer=tracer))
+        return self._compiled[tracer]
+
+    def glsl(self, target: str = "glsl450", stage: str = "fragment", tracer: str = DEFAULT_TRACER) -> str:
+        """The scene's picture as one complete shader."""
+        checked_names("target", (target,), ("glsl450",))
+        checked_names("stage", (stage,), ("fragment", "compute"))
+        return self.compiled(tracer).glsl("picture", stage)
+
+    def explanation(self, tracer: str = DEFAULT_TRACER) -> str:
+        """What the compiler proved of the scene and how it will be traced, with reasons."""
+        return self.compiled(tracer).explanation()
+
+    def render(
+        self,
+        size: tuple[int, int] = DEFAULT_SIZE,
+        *,
+        camera: View | None = None,
+        params: Mapping[str, Setting] | None = None,
+        samples: int = 1,
+        tracer: str = DEFAULT_TRACER,
+        backend: str = "auto",
+        aovs: Iterable[str] = AOVS,
+        progress: Progress | None = None,
+        note: Callable[[str], None] = warn,
+    ) -> Image:
+        """A picture of `size` (width, height) pixels, by `samples` rays a pixel.
+
+        `params` are in the scene's units (angles in radians, colours linear); `progress` is told the share done and may
+        raise to stop; `note` is told what happened that was not asked for (no OpenGL: slower).
+        """
+        size, samples = checked_size(size), checked_samples(samples)
+        wanted = checked_names("image", aovs, AOVS)
+        values = checked_params(self.params, params or {})
+        (backend,) = checked_names("backend", (backend,), BACKENDS)
+        shot = Shot(self.compiled(tracer), camera or View(), values, size)
+        renderer = self._renderer(backend, note)
+        passes = samples + bool(wanted)
+        colour = _accumulated(renderer, shot, samples, _part(progress, 0, passes))
+        kept = _aovs(renderer, shot, wanted, _part(progress, samples, passes)) if wanted else {}
+        return Image(colour, kept, tuple(shot.compiled.materials), renderer.name)
+
+    def _renderer(self, backend: str, note: Callable[[str], None]) -> Renderer:
+        if backend not in self._renderers:
+            self._renderers[backend] = _opened(backend, note)
+        return self._renderers[backend]
+
+    def close(self) -> None:
+        """Give back the device, if one was opened. The program can still be used; it opens another."""
+        _close_all(self._renderers)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def load(given: Input) -> Program:
+    """Read and elaborate a scene. Raises SceneError with everything that is wrong with it."""
+    from sdfc import pipeline
+
+    return Program(pipeline.load(given.source, given.folder, given.kind))
+
+
+def compile(scene: str | Path, kind: Kind | None = None) -> Program:
+    """A program from a scene's text or its file (a Path, or a name that ends in `.sdf` or `.csg`)."""
+    if isinstance(scene, Path) or looks_like_path(scene):
+        return load(from_path(scene, kind))
+    return load(from_text(scene, kind or "sdf"))
+
+
+def _opened(backend: str, note: Callable[[str], None]) -> Renderer:
+    if backend != "cpu":
+        try:
+            return GlRenderer()
+        except DeviceError as error:
+            if backend == "gl":
+                raise
+            reason = str(error).splitlines()[0]
+            note(f"{reason}: rendering with NumPy, which is much slower (`sdfc doctor` says what to install)")
+    from sdfc.api.cpu import CpuRenderer
+
+    return CpuRenderer()
+
+
+def _close_all(renderers: dict[str, Renderer]) -> None:
+    while renderers:
+        renderers.popitem()[1].close()
+
+
+def _accumulated(renderer: Renderer, shot: Shot, samples: int, progress: Progress | None) -> Array:
+    """The mean of the samples' radiance, float32 (height, width, 3)."""
+    import numpy as np
+
+    total = np.zeros((shot.size[1], shot.size[0], 3))
+    for sample in range(samples):
+        part = _part(progress, sample, samples)
+        total += renderer.radiance(shot, sample, samples, part)[..., :3]
+    if not np.isfinite(total).any():
+        raise DeviceError(f"{renderer.name} drew nothing but NaN")
+    return (total / samples).astype(np.float32)
+
+
+def _aovs(renderer: Renderer, shot: Shot, wanted: tuple[str, ...], progress: Progress | None) -> dict[str, Array]:
+    """The images beside the colour that are wanted, in the forms that Image documents."""
+    import numpy as np
+
+    first, normal, position, _ = renderer.probe(shot, progress)
+    hit = first[..., 3] > 0.5
+    made: dict[str, Callable[[], Array]] = {
+        "depth": lambda: np.where(hit, first[..., 0], np.inf).astype(np.float32),
+        "normal": lambda: np.where(hit[..., None], normal[..., :3], 0.0).astype(np.float32),
+        "position": lambda: np.where(hit[..., None], position[..., :3], np.nan).astype(np.float32),
+        "material": lambda: np.where(hit, np.round(first[..., 2]), -1).astype(np.int32),
+        "steps": lambda: np.round(first[..., 1]).astype(np.int32),
+    }
+    return {name: made[name]() for name in wanted}
+
+
+def _part(progress: Progress | None, index: int, count: int) -> Progress | None:
+    """Progress of one of `count` equal parts, as progress of the whole."""
+    if progress is None:
+        return None
+    whole = progress
+
+    def report(share: float) -> None:
+        whole((index + share) / count)
+
+    return report

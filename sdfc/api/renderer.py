@@ -1,0 +1,101 @@
+"""The two ways to draw a compiled scene, OpenGL and the CPU, behind one face."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol, TypeAlias
+
+from sdfc.api.request import View
+from sdfc.diagnostics import DeviceError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from sdfc.gpu.program import FragmentProgram
+    from sdfc.pipeline import Compiled
+
+Progress: TypeAlias = Callable[[float], None]
+Buffer: TypeAlias = "NDArray[np.floating]"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shot:
+    """What is to be drawn: a compiled scene, seen so, with these live values, this large."""
+
+    compiled: Compiled
+    view: View
+    params: Mapping[str, tuple[float, ...]]
+    size: tuple[int, int]
+
+
+class Renderer(Protocol):
+    """Draws shots. Buffers are float (height, width, 4), rows from the top."""
+
+    @property
+    def name(self) -> str:
+        """What draws, as it calls itself."""
+
+    def radiance(self, shot: Shot, sample: int, samples: int, progress: Progress | None) -> Buffer:
+        """Linear radiance and, in the last channel, whether something was hit (0 or 1), for one sample of a pixel."""
+
+    def probe(self, shot: Shot, progress: Progress | None) -> list[Buffer]:
+        """At the pixels' centres: (depth, steps, material, hit), (normal, 0), (position, 0), (ray direction, 0)."""
+
+    def close(self) -> None:
+        """Give back what it holds."""
+
+
+class GlRenderer:
+    """Draws with OpenGL, on a device of its own; keeps the programs that it has compiled."""
+
+    def __init__(self) -> None:
+        from sdfc.gpu.device import open_device
+
+        self.device = open_device()
+        self._programs: dict[str, FragmentProgram] = {}
+
+    @property
+    def name(self) -> str:
+        """What draws, as the driver calls it."""
+        return self.device.renderer
+
+    def radiance(self, shot: Shot, sample: int, samples: int, progress: Progress | None) -> Buffer:
+        """See Renderer."""
+        return self._draw(shot, "radiance", 1, sample, samples, progress)[0]
+
+    def probe(self, shot: Shot, progress: Progress | None) -> list[Buffer]:
+        """See Renderer."""
+        return self._draw(shot, "probe", 4, 0, 1, progress)
+
+    def _draw(
+        self, shot: Shot, entry: str, attachments: int, sample: int, samples: int, progress: Progress | None
+    ) -> list[Buffer]:
+        from sdfc.gpu.frame import Frame
+
+        program = self._program(shot.compiled.glsl(entry, "fragment"))
+        uniforms = shot.compiled.uniforms(shot.view, shot.params, shot.size, jitter(sample))
+        with Frame(self.device, *shot.size, attachments) as frame:
+            frame.draw(program, uniforms, progress)
+            images: list[Buffer] = [frame.read(index) for index in range(attachments)]
+        if (images[0][..., 3] < 0.0).any():  # gpu.frame.UNDRAWN
+            raise DeviceError(f"{self.name} reported success, but left pixels undrawn")
+        return images
+
+    def _program(self, glsl: str) -> FragmentProgram:
+        from sdfc.gpu.program import FragmentProgram
+
+        if glsl not in self._programs:
+            self._programs[glsl] = FragmentProgram(self.device, glsl)
+        return self._programs[glsl]
+
+    def close(self) -> None:
+        """Give the device back, and its programs with it."""
+        self._programs.clear()
+        self.device.close()
+
+
+def jitter(sample: int) -> tuple[float, float]:
+    """Where in its pixel a sample lies, from the centre, in pixels: Roberts's R2 sequence (2018), the centre first."""
+    return (0.5 + sample * 0.7548776662466927) % 1.0 - 0.5, (0.5 + sample * 0.5698402909980532) % 1.0 - 0.5

@@ -1,0 +1,155 @@
+"""Rewrites to equal, simpler nodes, tried as each node is added."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from sdfc.field.operations import Op, Type
+
+if TYPE_CHECKING:
+    from sdfc.field.graph import Expr, FieldGraph
+
+
+def _is_zero(e: Expr) -> bool:
+    return e.op is Op.CONST and not any(e.numbers)
+
+
+def _is_all(e: Expr, value: float) -> bool:
+    return e.op is Op.CONST and e.type is not Type.BOOL and all(v == value for v in e.numbers)
+
+
+def _zeros(graph: FieldGraph, *like: Expr) -> Expr:
+    return graph.constant(*([0.0] * max(e.type.size for e in like)))
+
+
+def simplify(graph: FieldGraph, op: Op, args: tuple[Expr, ...], value: object) -> Expr | None:
+    """An equal, simpler node, or None. Only rewrites that are exact in real arithmetic for finite values."""
+    rule = _SIMPLIFY.get(op)
+    if op is Op.SWIZZLE:
+        assert isinstance(value, tuple)
+        return _simplify_swizzle(graph, args[0], tuple(int(i) for i in value))
+    return rule(graph, *args) if rule is not None else None
+
+
+def _simplify_add(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
+    if _is_zero(b) and a.type.size >= b.type.size:
+        return a
+    if _is_zero(a) and b.type.size >= a.type.size:
+        return b
+    return graph.add(Op.SUB, a, b.args[0]) if b.op is Op.NEG else None
+
+
+def _simplify_sub(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
+    if _is_zero(b) and a.type.size >= b.type.size:
+        return a
+    if _is_zero(a) and b.type.size >= a.type.size:
+        return graph.add(Op.NEG, b)
+    if a is b:
+        return _zeros(graph, a)
+    return graph.add(Op.ADD, a, b.args[0]) if b.op is Op.NEG else None
+
+
+def _simplify_mul(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
+    if _is_zero(a) or _is_zero(b):
+        return _zeros(graph, a, b)
+    for factor, other in ((b, a), (a, b)):
+        if other.type.size >= factor.type.size and _is_all(factor, 1.0):
+            return other
+        if other.type.size >= factor.type.size and _is_all(factor, -1.0):
+            return graph.add(Op.NEG, other)
+    return None
+
+
+def _simplify_div(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
+    if _is_zero(a):
+        return _zeros(graph, a, b)
+    if a.type.size >= b.type.size and _is_all(b, 1.0):
+        return a
+    return graph.add(Op.NEG, a) if a.type.size >= b.type.size and _is_all(b, -1.0) else None
+
+
+def _simplify_pow(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
+    return a if a.type.size >= b.type.size and _is_all(b, 1.0) else None
+
+
+def _simplify_neg(graph: FieldGraph, a: Expr) -> Expr | None:
+    return a.args[0] if a.op is Op.NEG else None
+
+
+def _simplify_abs(graph: FieldGraph, a: Expr) -> Expr | None:
+    return a if a.op is Op.ABS else graph.add(Op.ABS, a.args[0]) if a.op is Op.NEG else None
+
+
+def _simplify_same(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
+    return a if a is b else None
+
+
+def _simplify_and(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
+    if a.op is Op.CONST:
+        return b if a.numbers[0] else a
+    if b.op is Op.CONST:
+        return a if b.numbers[0] else b
+    return a if a is b else None
+
+
+def _simplify_or(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
+    if a.op is Op.CONST:
+        return a if a.numbers[0] else b
+    if b.op is Op.CONST:
+        return b if b.numbers[0] else a
+    return a if a is b else None
+
+
+def _simplify_not(graph: FieldGraph, a: Expr) -> Expr | None:
+    return a.args[0] if a.op is Op.NOT else None
+
+
+def _simplify_select(graph: FieldGraph, condition: Expr, a: Expr, b: Expr) -> Expr | None:
+    if a is b:
+        return a
+    if condition.op is not Op.CONST:
+        return None
+    chosen, other = (a, b) if condition.numbers[0] else (b, a)
+    if chosen.type.size >= other.type.size:
+        return chosen
+    return graph.add(Op.VECTOR, *([chosen] * other.type.size))
+
+
+def _simplify_swizzle(graph: FieldGraph, a: Expr, indices: tuple[int, ...]) -> Expr | None:
+    if indices == tuple(range(a.type.size)):
+        return a
+    if a.op is Op.VECTOR:
+        picked = [a.args[i] for i in indices]
+        return picked[0] if len(picked) == 1 else graph.add(Op.VECTOR, *picked)
+    if a.op is Op.SWIZZLE:
+        assert isinstance(a.value, tuple)
+        return graph.swizzle(a.args[0], tuple(int(a.value[i]) for i in indices))
+    return None
+
+
+def _simplify_vector(graph: FieldGraph, *args: Expr) -> Expr | None:
+    """vec3(v.x, v.y, v.z) is v."""
+    whole = args[0].args[0] if args[0].op is Op.SWIZZLE else None
+    if whole is None or whole.type.size != len(args):
+        return None
+    in_order = all(a.op is Op.SWIZZLE and a.args[0] is whole and a.value == (i,) for i, a in enumerate(args))
+    return whole if in_order else None
+
+
+_SIMPLIFY: dict[Op, Callable[..., Expr | None]] = {
+    Op.ADD: _simplify_add,
+    Op.SUB: _simplify_sub,
+    Op.MUL: _simplify_mul,
+    Op.DIV: _simplify_div,
+    Op.POW: _simplify_pow,
+    Op.NEG: _simplify_neg,
+    Op.ABS: _simplify_abs,
+    Op.MIN: _simplify_same,
+    Op.MAX: _simplify_same,
+    Op.AND: _simplify_and,
+    Op.OR: _simplify_or,
+    Op.NOT: _simplify_not,
+    Op.SELECT: _simplify_select,
+    Op.VECTOR: _simplify_vector,
+}

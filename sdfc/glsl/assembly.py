@@ -1,0 +1,177 @@
+"""Whole shaders: Python decides, templates print. The one Jinja environment."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from sdfc.field.graph import FieldGraph
+from sdfc.glsl.body import Body
+from sdfc.glsl.distance import DistanceWriter
+from sdfc.glsl.expression import literal, print_function, type_name
+from sdfc.glsl.functions import Functions
+from sdfc.glsl.light import LightWriter
+from sdfc.glsl.live import Live
+from sdfc.glsl.names import identifier
+from sdfc.glsl.proven import ProvenWriter, TraceText
+from sdfc.glsl.surface import SurfaceWriter
+from sdfc.plan.plan import CUT, FINE, GROW, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, Plan
+from sdfc.plan.steps import Blend, leaves_of
+from sdfc.plan.setting import Setting
+from sdfc.scene.model import Param
+from sdfc.shade.ambient import OCCLUSION_HEIGHTS
+from sdfc.shade.functions import FUNCTIONS
+from sdfc.shape.lower import Lowering
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A global of the shader."""
+
+    type: str
+    name: str
+    uniform: str = ""
+    note: str = ""
+
+
+@cache
+def _environment() -> Environment:
+    return Environment(
+        loader=PackageLoader("sdfc.templates", "."),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
+
+
+def assemble(graph: FieldGraph, plan: Plan, setting: Setting, entry: str, stage: str) -> str:
+    """One complete shader. `entry` is picture, radiance or probe; `stage` is fragment or compute (picture only)."""
+    return _Assembly(graph, plan, setting, entry).text(stage)
+
+
+class _Assembly:
+    def __init__(self, graph: FieldGraph, plan: Plan, setting: Setting, entry: str) -> None:
+        self._graph = graph
+        self._plan = plan
+        self._setting = setting
+        self._entry = entry
+        self._live = Live()
+        self._functions = Functions(graph, Lowering())
+        self._lit = entry != "probe"
+
+    def text(self, stage: str) -> str:
+        suffix = {"fragment": "frag", "compute": "comp"}[stage]
+        template = _environment().get_template(f"entry/{self._entry}.{suffix}")
+        text = template.render(self._context())
+        return "\n".join(line.rstrip() for line in text.split("\n")).replace("\n\n\n", "\n\n")
+
+    def _context(self) -> dict[str, object]:
+        plan, tracer = self._plan, self._plan.tracer
+        trace = TraceText("", False, False)
+        if tracer.needs_steps:
+            trace = ProvenWriter(self._graph, self._functions, self._live).write(plan.root)
+        has_map = tracer.needs_map or self._lit
+        distance = DistanceWriter(self._graph, self._functions, self._live, plan.slopes)
+        map_text = distance.write(plan.root) if has_map else ""
+        surface = SurfaceWriter(self._graph, self._functions, self._live, list(plan.materials), self._setting.unpainted).write(plan.root)
+        context: dict[str, object] = {
+            "version": "450 core",
+            "header": self._header(),
+            "radius": literal(plan.radius),
+            "centre": _vector(plan.centre),
+            "params": self._params(),
+            "grow": literal(GROW),
+            "cut": literal(CUT),
+            "smallest": literal(SMALLEST_TOLERANCE),
+            "fine": literal(FINE),
+            "most_steps": self._most_steps(),
+            "needs_marching": trace.march or tracer.needs_map,
+            "needs_map_library": has_map and "box_distance" in map_text,
+            "map": map_text,
+            "trace": trace,
+            "tracer_template": tracer.template,
+            "surface": surface,
+        }
+        if self._lit:
+            context |= self._lighting(surface.properties)
+        context["functions"] = "\n".join(print_function(f) for f in self._functions.all)
+        context["live"] = [Variable(type_name(e.type), n) for n, e in self._live.values]
+        context["live_lines"] = self._live_lines()
+        return context
+
+    def _lighting(self, properties: dict[str, str]) -> dict[str, object]:
+        writer = LightWriter(self._graph, self._live, self._plan.centre, self._plan.radius)
+        lights, suns = writer.lights(self._setting.lights), writer.suns(self._setting.lights)
+        transmission = properties["transmission"] not in ("0.0", "0")
+        needed = {"sky_radiance": True, "sun_disc": bool(suns), "reflect_light": bool(lights)}
+        needed |= {"point_falloff": len(suns) < len(lights), "occlusion_weight": True, "ambient": True}
+        needed |= {"transmit": transmission}
+        needed |= dict.fromkeys(("tone_map", "encode_srgb"), self._entry == "picture")
+        functions = [print_function(FUNCTIONS[name](self._graph)) for name, wanted in needed.items() if wanted]
+        return {
+            "shading_functions": "\n".join(functions),
+            "up": _vector(self._setting.up),
+            "sky": writer.sky(self._setting.sky),
+            "lights": lights,
+            "suns": suns,
+            "occlusion_heights": f"vec4({', '.join(map(literal, OCCLUSION_HEIGHTS))})",
+            "lift": literal(LIFT),
+            "transmission": transmission,
+        }
+
+    def _most_steps(self) -> int:
+        """So many marching steps a ray that all loops of an invocation stay below llvmpipe's silent limit."""
+        blends = sum(isinstance(leaf, Blend) for leaf in leaves_of(self._plan.root))
+        rays = 1 + (len(self._setting.lights) if self._lit else 0)
+        free = MOST_LOOPS // rays - 2 * self._plan.events
+        return max(16, min(2048, free // (1 + 5 * blends)))
+
+    def _header(self) -> list[str]:
+        tracer = self._plan.tracer
+        return [f"{self._setting.title}, made by sdfc", f"tracer: {tracer.name}. {tracer.doc}"]
+
+    def _params(self) -> list[Variable]:
+        return [
+            Variable(
+                type_name(p.type),
+                identifier(p.name),
+                uniform_name(p),
+                f"{p.unit}, {_numbers(p.default)}{_range(p)}",
+            )
+            for p in self._setting.params
+        ]
+
+    def _live_lines(self) -> list[str]:
+        lines: list[str] = []
+        done: dict[int, str] = {}
+        for name, expr in self._live.values:
+            body = Body(lambda e: done.get(e.id), 0)
+            text = body.text(expr)
+            scoped = [*body.lines, f"{name} = {text};"]
+            lines += scoped if len(scoped) == 1 else ["{", *(f"    {line}" for line in scoped), "}"]
+            done[expr.id] = name
+        return lines
+
+
+def uniform_name(param: Param) -> str:
+    """The uniform that carries a param."""
+    return identifier(f"set_{param.name}")
+
+
+def _range(param: Param) -> str:
+    bounded = param.low is not None and param.high is not None
+    return f" in {param.low:g} .. {param.high:g}" if bounded else ""
+
+
+def _vector(numbers: Sequence[float]) -> str:
+    return f"vec3({', '.join(literal(n) for n in numbers)})"
+
+
+def _numbers(values: Sequence[float]) -> str:
+    return " ".join(f"{v:g}" for v in values)
+

@@ -1,0 +1,115 @@
+"""Smooth unions of convex functions: stepped by the blend of their tangents, which is concave and below the field."""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from sdfc.field.graph import Expr, FieldGraph, Type
+from sdfc.glsl.body import Body, own_point
+from sdfc.glsl.expression import literal
+from sdfc.glsl.functions import Call, Functions, Role
+from sdfc.glsl.live import Live
+from sdfc.plan.steps import Blend, BlendNode, BlendTree, BlendUnion, Part, Tangent
+
+
+class BlendWriter:
+    """Writes one function a blend: its value where each leaf is replaced by its tangent, `tau` further along the ray."""
+
+    def __init__(self, graph: FieldGraph, functions: Functions, live: Live) -> None:
+        self._graph = graph
+        self._functions = functions
+        self._live = live
+        self.texts: list[str] = []
+
+    def slope(self, body: Body, part: Part, direction: Expr, role: Role = Role.SLOPE) -> str:
+        """The text of vec2(value, derivative along the ray) of a convex part, in the scene's units."""
+        q = body.point(own_point(part.inverse, self._graph.input("p")), f"q_{part.name}")
+        text = body.call(self._functions.of_part(part, role), [q, body.text(direction)])
+        return text if _is_one(part.stretch) else f"{body.text(part.stretch)} * {text}"
+
+    def parts_of(self, blend: Blend) -> list[Part]:
+        return list(dict.fromkeys(_parts(blend.tree)))
+
+    def next(self, body: Body, blend: Blend, directions: dict[int, Expr]) -> str:
+        name = blend.part.name
+        parts = self.parts_of(blend)
+        self._function(blend, parts)
+        for part in parts:
+            body.add(f"vec2 v_{part.name} = {self.slope(body, part, directions[id(part)], Role.DISTANCE_SLOPE)};", part.span)
+        arguments = ", ".join(f"v_{part.name}" for part in parts)
+        body.add(f"float v_{name} = {name}_ahead(0.0, {arguments});", blend.part.span)
+        body.add(f"float left_{name} = {name}_clear(v_{name}, eps, {arguments});")
+        least = literal(1.0 / max(blend.lipschitz, 1e-9))
+        step = f"max(left_{name}, {least} * v_{name})" if blend.lipschitz != 1.0 else f"max(left_{name}, v_{name})"
+        return f"ball(t, v_{name} <= eps ? v_{name} : {step}, eps)"
+
+    def _function(self, blend: Blend, parts: list[Part]) -> None:
+        name = blend.part.name
+        formal = ", ".join(f"vec2 v_{part.name}" for part in parts)
+        actual = ", ".join(f"v_{part.name}" for part in parts)
+        body = Body(self._live)
+        for part in parts:
+            body.add(f"float {part.name} = v_{part.name}.x + tau * v_{part.name}.y;")
+        body.add(f"return {self._tree(blend.tree, body)};")
+        head = f"float {name}_ahead(float tau, {formal}) {{"
+        doc = "// the blend of the tangents, tau ahead: concave in tau, and never above the field"
+        self.texts.append("\n".join([doc, head, *body.lines, "}", ""]))
+        self.texts.append(_CLEAR.format(name=name, formal=formal, actual=actual))
+
+    def _tree(self, tree: BlendTree, body: Body) -> str:
+        match tree:
+            case Tangent():
+                return tree.part.name
+            case BlendUnion():
+                names = [self._tree(t, body) for t in tree.operands]
+                text = names[0]
+                for other in names[1:]:
+                    text = f"min({text}, {other})"
+                return text
+            case BlendNode():
+                first, second = self._tree(tree.first, body), self._tree(tree.second, body)
+                weights: Call = self._functions.joined(tree.shape)
+                name = f"joined_{len(body.lines)}"
+                body.declare(Type.FLOAT, name, body.call(weights, [first, second]), tree.shape.span)
+                return name
+            case _:
+                assert_never(tree)
+
+
+# Two bounds close in on the root of the concave function: a chord crosses before it, the line through two points on
+# the left crosses after it. The left one is proven, and is the step.
+_CLEAR = """// how far ahead the blend of the tangents stays above eps / 2
+float {name}_clear(float value, float eps, {formal}) {{
+    float left = 0.0, left_value = value - 0.5 * eps;
+    float right = left_value * 4.0 + 1.0, right_value = {name}_ahead(right, {actual}) - 0.5 * eps;
+    if (right_value > 0.0) return right;
+    for (int i = 0; i < 4; i++) {{
+        float chord = left + (right - left) * left_value / max(left_value - right_value, 1e-30);
+        float at_chord = {name}_ahead(chord, {actual}) - 0.5 * eps;
+        float beyond = chord + (chord - left) * at_chord / max(left_value - at_chord, 1e-30);
+        bool closer = at_chord > 0.0 && left_value > at_chord && beyond < right;
+        left = at_chord > 0.0 ? chord : left;
+        left_value = at_chord > 0.0 ? at_chord : left_value;
+        right = closer ? beyond : right;
+        right_value = closer ? {name}_ahead(beyond, {actual}) - 0.5 * eps : right_value;
+        if (right_value > 0.0) return left;
+    }}
+    return left * 0.9999996;
+}}
+"""
+
+
+def _parts(tree: BlendTree) -> list[Part]:
+    match tree:
+        case Tangent():
+            return [tree.part]
+        case BlendUnion():
+            return [part for operand in tree.operands for part in _parts(operand)]
+        case BlendNode():
+            return _parts(tree.first) + _parts(tree.second)
+        case _:
+            assert_never(tree)
+
+
+def _is_one(value: Expr) -> bool:
+    return value.is_constant and value.number == 1.0

@@ -1,0 +1,79 @@
+"""The body of one GLSL function while it is being written: statements in order, each with its place in the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from sdfc.diagnostics import Span
+from sdfc.field.graph import LEAVES, Expr, Type
+from sdfc.glsl.expression import Printer, type_name
+from sdfc.glsl.functions import Call
+from sdfc.glsl.names import Names
+from sdfc.shape.matrix import Matrix
+
+# what templates and generated statements use: no local of an expression may take these
+_TAKEN = ("o", "d", "p", "q", "t", "next", "near", "far", "eps", "first", "start", "limit", "count", "steps", "field")
+
+
+def place(span: Span) -> str:
+    """The comment that leads from a line of GLSL back to the scene: file name (no folder), line, column."""
+    line, column = span.source.position(span.start)
+    return f"{span.source.name.rsplit('/', 1)[-1]}:{line}:{column}"
+
+
+class Body:
+    """Statements. A point in a part's own space is computed once, where the first part needs it."""
+
+    def __init__(self, live: Callable[[Expr], str | None], indent: int = 1) -> None:
+        self.lines: list[str] = []
+        self._live: Callable[[Expr], str | None] = live
+        self._indent = indent
+        self._local: dict[int, str] = {}
+        self._scope = Names(_TAKEN)
+        self._printer = Printer(self._name, self._scope)
+
+    def _name(self, expr: Expr) -> str | None:
+        return self._local.get(expr.id) or self._live(expr)
+
+    def text(self, value: Expr) -> str:
+        """The text of an expression, after the statements that it needs."""
+        return self.texts([value])[0]
+
+    def texts(self, values: Sequence[Expr]) -> list[str]:
+        lines, texts = self._printer.statements(list(values))
+        for line in lines:
+            self.add(line)
+        return texts
+
+    def point(self, value: Expr, wanted: str) -> str:
+        """The text of a point or direction: a local of its own unless it is only moved or given."""
+        if value.op in LEAVES or all(a.op in LEAVES for a in value.args):
+            return self.text(value)
+        if value.id not in self._local:
+            text = self.text(value)
+            name = self._scope.fresh(wanted)
+            self.add(f"{type_name(value.type)} {name} = {text};")
+            self._local[value.id] = name
+        return self._local[value.id]
+
+    def add(self, line: str, span: Span | None = None) -> None:
+        comment = f"  // {place(span)}" if span is not None else ""
+        self.lines.append("    " * self._indent + line + comment)
+
+    def declare(self, type_: Type, name: str, text: str, span: Span | None = None) -> None:
+        self._scope.reserve(name)
+        self.add(f"{type_name(type_)} {name} = {text};", span)
+
+    def call(self, call: Call, leading: Sequence[str]) -> str:
+        """The text of a call: point (and direction, growth) first, then the definition's own arguments."""
+        return f"{call.name}({', '.join([*leading, *self.texts(call.arguments)])})"
+
+
+def own_point(inverse: Matrix | None, p: Expr) -> Expr:
+    """The point in a part's own space."""
+    return p if inverse is None else inverse.apply(p)
+
+
+def own_direction(inverse: Matrix | None, d: Expr) -> Expr:
+    """The direction in a part's own space (not of unit length where the part is scaled)."""
+    return d if inverse is None else inverse.direction(d)

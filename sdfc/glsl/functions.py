@@ -1,0 +1,171 @@
+"""The GLSL functions of definitions: for each, only the meanings that a scene asks for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import assert_never
+
+from sdfc.field.derivative import directional, gradient
+from sdfc.field.function import Function
+from sdfc.field.graph import Expr, FieldGraph, Type
+from sdfc.plan.steps import Part
+from sdfc.shape.definition import Argument, Definition, Kind
+from sdfc.shape.graph import Apply
+from sdfc.shape.lower import Lowering
+
+_TYPES = {
+    Kind.NUMBER: Type.FLOAT,
+    Kind.LENGTH: Type.FLOAT,
+    Kind.ANGLE: Type.FLOAT,
+    Kind.VECTOR2: Type.VEC2,
+    Kind.POINT2: Type.VEC2,
+    Kind.VECTOR3: Type.VEC3,
+    Kind.POINT3: Type.VEC3,
+}
+
+
+class Role(Enum):
+    """What a function says of a definition; the value is the suffix of its name."""
+
+    VALUE = ""  # float: the formula
+    RAY = "_ray"  # vec2, or vec4 for two: sorted intervals, empty ones as (FAR, -FAR)
+    SLOPE = "_slope"  # vec2: a convex function and its derivative along d
+    DISTANCE_SLOPE = "_distance_slope"  # vec2: the formula and its derivative along d
+    SURFACE = "_surface"  # vec4: gradient and value of a function with the surface as its zero set
+    DISTANCE_SURFACE = "_distance_surface"  # vec4: gradient and value of the formula
+    JOINED = "_of"  # float: a blend of two values
+    WEIGHTS = "_weights"  # vec3: a blend's derivatives by its two operands, and its value
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A function's name and the arguments that follow the point (and direction, and growth)."""
+
+    name: str
+    arguments: tuple[Expr, ...]
+
+
+class Functions:
+    """Collects functions as calls are asked for; equal ones are one."""
+
+    def __init__(self, graph: FieldGraph, lowering: Lowering) -> None:
+        self._graph = graph
+        self._lowering = lowering
+        self._by_key: dict[tuple[object, ...], Function] = {}
+        self._taken: dict[str, int] = {}
+
+    @property
+    def all(self) -> tuple[Function, ...]:
+        return tuple(self._by_key.values())
+
+    def of_part(self, part: Part, role: Role) -> Call:
+        """The call that gives the part's `role` in the part's own space."""
+        return self.of_shape(part.shape, role, part.name)
+
+    def of_shape(self, shape: Apply, role: Role, name: str) -> Call:
+        definition = shape.definition
+        if definition.is_primitive and all(p.kind in _TYPES for p in definition.values):
+            environment: dict[str, Argument] = {p.name: self._input(p.name, p.kind) for p in definition.values}
+            arguments = tuple(a for a in shape.arguments if isinstance(a, Expr))
+            key: tuple[object, ...] = (id(definition), role)
+            label, formal = definition.name, tuple((p.name, _TYPES[p.kind]) for p in definition.values)
+            parametric = self._graph_apply(shape, environment)
+        else:  # lists, counts and children are part of the formula: a function for this one alone
+            arguments, formal, label, parametric = (), (), name, shape
+            key = (shape.id, role)
+        if key not in self._by_key:
+            self._by_key[key] = self._made(parametric, role, self._unique(label + role.value), formal)
+        return Call(self._by_key[key].name, arguments)
+
+    def joined(self, blend: Apply) -> Call:
+        """A blend as a function of its operands' values `a` and `b`."""
+        return self._blend(blend, Role.JOINED)
+
+    def weights(self, blend: Apply) -> Call:
+        """A blend's derivatives by `a` and `b`, and its value, as a function of `a` and `b`."""
+        return self._blend(blend, Role.WEIGHTS)
+
+    def _blend(self, blend: Apply, role: Role) -> Call:
+        definition = blend.definition
+        key = (id(definition), role)
+        if key not in self._by_key:
+            environment: dict[str, Argument] = {p.name: self._input(p.name, p.kind) for p in definition.values}
+            a, b = self._graph.input("a", Type.FLOAT), self._graph.input("b", Type.FLOAT)
+            first, second = definition.children
+            children = {first.name: lambda _: a, second.name: lambda _: b}
+            result = definition.formula(self._graph.input("p"), environment, children)
+            if role is Role.WEIGHTS:
+                one = self._graph.constant(1.0)
+                slopes = [directional(result, {a: one}), directional(result, {b: one})]
+                result = self._graph.vector(*slopes, result)
+            formal = (("a", Type.FLOAT), ("b", Type.FLOAT), *((p.name, _TYPES[p.kind]) for p in definition.values))
+            self._by_key[key] = Function(self._unique(definition.name + role.value), formal, result, definition.doc)
+        return Call(self._by_key[key].name, tuple(a for a in blend.arguments if isinstance(a, Expr)))
+
+    def _unique(self, name: str) -> str:
+        self._taken[name] = self._taken.get(name, 0) + 1
+        return name if self._taken[name] == 1 else f"{name}_{self._taken[name]}"
+
+    def _input(self, name: str, kind: Kind) -> Expr:
+        return self._graph.input(name, _TYPES[kind])
+
+    def _graph_apply(self, shape: Apply, environment: dict[str, Argument]) -> Apply:
+        arguments = tuple(environment[p.name] for p in shape.definition.values)
+        # not a node of the scene: only its formula is read
+        return Apply(
+            id=-1 - shape.id,
+            span=shape.span,
+            dimension=shape.dimension,
+            definition=shape.definition,
+            arguments=arguments,
+            children=shape.children,
+        )
+
+    def _made(self, shape: Apply, role: Role, name: str, formal: tuple[tuple[str, Type], ...]) -> Function:
+        graph = self._graph
+        p, o, d = graph.input("p"), graph.input("o"), graph.input("d")
+        doc = shape.definition.doc
+        point, ray = ("p", Type.VEC3), (("o", Type.VEC3), ("d", Type.VEC3))
+        match role:
+            case Role.VALUE:
+                return Function(name, (point, *formal), self._lowering.value(shape, p), doc)
+            case Role.RAY:
+                grow = graph.input("grow", Type.FLOAT)
+                result = intervals(shape, o, d, grow)
+                return Function(name, (*ray, ("grow", Type.FLOAT), *formal), result, doc)
+            case Role.SLOPE | Role.DISTANCE_SLOPE:
+                distance = role is Role.DISTANCE_SLOPE
+                value = self._lowering.value(shape, p) if distance else self.convex_function(shape, p)
+                slope = directional(value, {p: d})
+                return Function(name, (point, ("d", Type.VEC3), *formal), graph.vector(value, slope), doc)
+            case Role.SURFACE | Role.DISTANCE_SURFACE:
+                distance = role is Role.DISTANCE_SURFACE
+                value = self._lowering.value(shape, p) if distance else self.convex_function(shape, p)
+                normal = gradient(value, p)
+                result = graph.vector(normal[0], normal[1], normal[2], value)
+                return Function(name, (point, *formal), result, doc)
+            case Role.WEIGHTS | Role.JOINED:
+                raise AssertionError("a blend's functions are of its operands' values, not of a point")
+            case _:
+                assert_never(role)
+
+    def convex_function(self, shape: Apply, p: Expr) -> Expr:
+        """The primitive's gauge (sharp, and convex where the solid is), else the formula."""
+        gauge = shape.definition.claims.gauge
+        if shape.definition.is_primitive and gauge is not None:
+            return gauge(p, shape.environment)
+        return self._lowering.value(shape, p)
+
+
+FAR = 1e9
+
+
+def intervals(shape: Apply, o: Expr, d: Expr, grow: Expr) -> Expr:
+    """A primitive's intervals as one vector; an empty one is (FAR, -FAR), so that one comparison with its end tells."""
+    assert shape.definition.claims.ray is not None
+    graph = o.graph
+    ends: list[Expr] = []
+    for enter, leave in shape.definition.claims.ray(o, d, grow, shape.environment):
+        ends += [enter, graph.select(enter < leave, leave, -FAR)]
+    return graph.vector(*ends)

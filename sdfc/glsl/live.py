@@ -1,0 +1,38 @@
+"""Values that a uniform decides: computed once, at the top of main, into globals (GL.md 0: uniforms read in loops are gathers)."""
+
+from __future__ import annotations
+
+from sdfc.field.graph import Expr, Op, topological
+
+
+class Live:
+    """Names for expressions over params alone. The params themselves are globals too, copied from their uniforms."""
+
+    def __init__(self) -> None:
+        self._names: dict[int, str] = {}
+        self._kind: dict[int, bool] = {}
+        self.values: list[tuple[str, Expr]] = []
+
+    def __call__(self, expr: Expr) -> str | None:
+        """The global that holds `expr`, or None where it depends on more than params, or on none."""
+        if expr.op in (Op.CONST, Op.INPUT, Op.PARAM) or not self._is_live(expr):
+            return None
+        if expr.id not in self._names:
+            self._names[expr.id] = f"live_{len(self.values) + 1}"
+            self.values.append((self._names[expr.id], expr))
+        return self._names[expr.id]
+
+    def _is_live(self, expr: Expr) -> bool:
+        if expr.id not in self._kind:
+            for node in topological([expr]):
+                if node.id in self._kind:
+                    continue
+                match node.op:
+                    case Op.PARAM:
+                        self._kind[node.id] = True
+                    case Op.INPUT | Op.CONST:
+                        self._kind[node.id] = False
+                    case _:
+                        constant = all(a.op is Op.CONST or self._kind[a.id] for a in node.args)
+                        self._kind[node.id] = constant and any(self._kind[a.id] for a in node.args)
+        return self._kind[expr.id]

@@ -1,0 +1,273 @@
+"""The `proven` tracer's scene-dependent half: the step tree as GLSL."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias, assert_never
+
+from sdfc.field.graph import Expr, FieldGraph, Type
+from sdfc.glsl.blend import BlendWriter
+from sdfc.glsl.body import Body, own_direction, own_point
+from sdfc.glsl.expression import literal
+from sdfc.glsl.functions import Functions, Role
+from sdfc.glsl.live import Live
+from sdfc.plan.steps import (
+    All,
+    Any,
+    Ball,
+    Blend,
+    Closed,
+    Part,
+    Step,
+    Tangent,
+    Within,
+    is_closed,
+    leaves_of,
+)
+
+
+Names: TypeAlias = dict[tuple[int, bool], str]
+
+
+@dataclass(frozen=True, slots=True)
+class TraceText:
+    """What templates/trace/proven.glsl includes: whole functions, and which of them there are."""
+
+    functions: str
+    events: bool
+    march: bool
+
+
+class ProvenWriter:
+    """Writes `solid_n`, `events` and `march` for one step tree."""
+
+    def __init__(self, graph: FieldGraph, functions: Functions, live: Live) -> None:
+        self._graph = graph
+        self._functions = functions
+        self._live = live
+        self._blends = BlendWriter(graph, functions, live)
+        self._o, self._d, self._p = (graph.input(n) for n in "odp")
+        self._texts: list[str] = []
+        self._count = 0
+
+    def write(self, root: Step) -> TraceText:
+        components = root.steps if isinstance(root, Any) else (root,)
+        closed = [c for c in components if is_closed(c)]
+        marched = [c for c in components if not is_closed(c)]
+        if closed:
+            self._events(closed)
+        if marched:
+            self._march(marched[0] if len(marched) == 1 else Any(tuple(marched)))
+        return TraceText("\n".join([*self._blends.texts, *self._texts]), bool(closed), bool(marched))
+
+    # events: hard CSG of closed-form intervals
+
+    def _events(self, components: list[Step]) -> None:
+        body = Body(self._live)
+        body.add("float first = FAR;")
+        for component in components:
+            match component:
+                case Closed(inside=True):
+                    text = f"enter({self._interval_text(body, component.part)}, start)"
+                    body.add(f"first = min(first, {text});", component.part.span)
+                case _:
+                    body.add(f"first = min(first, {self._solid(component)}(o, d, start));")
+        body.add("return first;")
+        self._function("float events(vec3 o, vec3 d, float start)", body, "the first hit of what is solved in closed form")
+
+    def _solid(self, component: Step) -> str:
+        self._count += 1
+        name = f"solid_{self._count}"
+        body = Body(self._live)
+        names = self._intervals(body, component)
+        body.add("float t, next = start;")
+        body.add("do {")
+        inner = Body(self._live, 2)
+        inner.add("t = next;")
+        inner.add(f"next = {self._next(component, inner, names)};")
+        inner.add("steps += 1.0;")
+        body.lines += inner.lines
+        body.add("} while (next > t && next < FAR);")
+        body.add("return next;")
+        parts = ", ".join(dict.fromkeys(leaf.part.name for leaf in leaves_of(component)[:6]))
+        self._function(f"float {name}(vec3 o, vec3 d, float start)", body, f"from one event to the next: {parts}")
+        return name
+
+    def _intervals(self, body: Body, step: Step) -> Names:
+        """Declares the ray's intervals with every closed-form leaf and box below `step`; names by part and side."""
+        names: Names = {}
+        for leaf in leaves_of(step):
+            match leaf:
+                case Closed(part=part, intervals=count, inside=inside) if (id(part), inside) not in names:
+                    name = part.name if inside else f"{part.name}_cut"
+                    type_ = Type.VEC2 if count == 1 else Type.VEC4
+                    body.declare(type_, name, self._interval_text(body, part, inside), part.span)
+                    names[id(part), inside] = name
+                case _:
+                    pass
+        return names
+
+    def _interval_text(self, body: Body, part: Part, inside: bool = True) -> str:
+        q = body.point(own_point(part.inverse, self._o), f"o_{part.name}")
+        dq = body.point(own_direction(part.inverse, self._d), f"d_{part.name}")
+        grow = body.text(part.own_grow * self._graph.input("GROW" if inside else "CUT", Type.FLOAT))
+        return body.call(self._functions.of_part(part, Role.RAY), [q, dq, grow])
+
+    # marching: what has no closed form
+
+    def _march(self, root: Step) -> None:
+        body = Body(self._live)
+        names = self._intervals(body, root)
+        self._boxes(body, root)
+        directions = self._directions(body, root)
+        body.add(f"float t, next = {self._start(root, names)};")
+        body.add("do {")
+        inner = Body(self._live, 2)
+        inner.add("t = next;")
+        inner.add("vec3 p = o + t * d;")
+        inner.add("float eps = tolerance(t);")
+        inner.add(f"next = {self._next(root, inner, names, directions)};")
+        inner.add("steps += 1.0;")
+        inner.add("count += 1;")
+        body.lines += inner.lines
+        body.lines.insert(0, "    int count = 0;")
+        body.add("} while (next > t && next < limit && count < MOST_STEPS);")
+        body.add("return next > t && next >= limit ? FAR : t;")
+        self._function(
+            "float march(vec3 o, vec3 d, float start, float limit)", body, "the first hit of what is marched, before `limit`"
+        )
+
+    def _boxes(self, body: Body, step: Step) -> None:
+        match step:
+            case Within():
+                centre = ", ".join(literal(c) for c in step.box.centre)
+                half = ", ".join(literal(h) for h in step.box.half)
+                body.add(f"vec2 {step.name} = box_interval(o - vec3({centre}), d, vec3({half}));")
+                self._boxes(body, step.step)
+            case Any() | All():
+                for child in step.steps:
+                    self._boxes(body, child)
+            case Closed() | Tangent() | Ball() | Blend():
+                pass
+            case _:
+                assert_never(step)
+
+    def _directions(self, body: Body, root: Step) -> dict[int, Expr]:
+        """The ray's direction in the own space of each tangent's part: the same all along the ray."""
+        found: dict[int, Expr] = {}
+        for leaf in leaves_of(root):
+            match leaf:
+                case Tangent(part=part):
+                    parts = [part]
+                case Blend():
+                    parts = self._blends.parts_of(leaf)
+                case _:
+                    parts = []
+            for part in parts:
+                if id(part) not in found:
+                    found[id(part)] = self._direction(body, part)
+        return found
+
+    def _direction(self, body: Body, part: Part) -> Expr:
+        own = own_direction(part.inverse, self._d)
+        if own is self._d:
+            return own
+        name = f"d_{part.name}"
+        body.declare(Type.VEC3, name, body.text(own))
+        return self._graph.input(name)
+
+    def _start(self, step: Step, names: Names) -> str:
+        """Where marching may begin: what boxes and closed-form parts prove before any value is known."""
+        match step:
+            case Closed(inside=True):
+                return f"enter({names[id(step.part), step.inside]}, start)"
+            case Within():
+                return f"enter({step.name}, start)"
+            case Any() if step.steps:
+                return _chain("min", [self._start(s, names) for s in step.steps])
+            case All():
+                return _chain("max", [self._start(s, names) for s in step.steps])
+            case Closed() | Tangent() | Ball() | Blend() | Any():
+                return "start"
+            case _:
+                assert_never(step)
+
+    # the tree
+
+    def _next(
+        self, step: Step, body: Body, names: Names, directions: dict[int, Expr] | None = None
+    ) -> str:
+        match step:
+            case Closed():
+                return f"{'enter' if step.inside else 'leave'}({names[id(step.part), step.inside]}, t)"
+            case Tangent():
+                value = self._blends.slope(body, step.part, (directions or {})[id(step.part)])
+                return f"tangent(t, {value}, eps)"
+            case Ball():
+                return self._ball(step, body)
+            case Blend():
+                return self._blends.next(body, step, directions or {})
+            case Within():
+                return f"inside({step.name}, t, {self._next(step.step, body, names, directions)})"
+            case Any():
+                return self._joined("min", "near", step.steps, body, names, directions)
+            case All():
+                return self._joined("max", "far", step.steps, body, names, directions)
+            case _:
+                assert_never(step)
+
+    def _joined(
+        self,
+        operation: str,
+        label: str,
+        steps: tuple[Step, ...],
+        body: Body,
+        names: Names,
+        directions: dict[int, Expr] | None,
+    ) -> str:
+        if not steps:
+            return "FAR"
+        texts = self._operands(operation, steps, body, names, directions)
+        if len(texts) <= 3:
+            return _chain(operation, texts)
+        self._count += 1
+        name = f"{label}_{self._count}"
+        body.add(f"float {name} = {texts[0]};")
+        for text in texts[1:]:
+            body.add(f"{name} = {operation}({name}, {text});")
+        return name
+
+    def _operands(
+        self,
+        operation: str,
+        steps: tuple[Step, ...],
+        body: Body,
+        names: Names,
+        directions: dict[int, Expr] | None,
+    ) -> list[str]:
+        """One text a step; the convex closed-form parts of an intersection meet in one interval first."""
+        texts: list[str] = []
+        convex = [s for s in steps if isinstance(s, Closed) and s.inside and s.intervals == 1]
+        if operation == "max" and len(convex) > 1:
+            texts.append(f"enter({_chain('both', [names[id(s.part), True] for s in convex])}, t)")
+            steps = tuple(s for s in steps if s not in convex)
+        return texts + [self._next(s, body, names, directions) for s in steps]
+
+    def _ball(self, step: Ball, body: Body) -> str:
+        part = step.part
+        value = body.call(self._functions.of_part(part, Role.VALUE), [body.point(own_point(part.inverse, self._p), f"q_{part.name}")])
+        scale = part.stretch * (1.0 / max(step.lipschitz, 1e-9))
+        factor = "" if scale.is_constant and scale.number == 1.0 else f"{body.text(scale)} * "
+        if step.inside:
+            return f"ball(t, {factor}{value}, eps)"
+        return f"ball(t, 3.0 * eps - {factor}{value}, eps)"
+
+    def _function(self, head: str, body: Body, doc: str) -> None:
+        self._texts.append("\n".join([f"// {doc}", head + " {", *body.lines, "}", ""]))
+
+
+def _chain(operation: str, texts: list[str]) -> str:
+    result = texts[0]
+    for text in texts[1:]:
+        result = f"{operation}({result}, {text})"
+    return result

@@ -1,0 +1,201 @@
+"""What is at a hit: one pass over the tree that keeps the gradient and the material of the part whose surface it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import assert_never
+
+from sdfc.field.graph import Expr, FieldGraph, Type
+from sdfc.glsl.body import Body, own_point
+from sdfc.glsl.expression import type_name
+from sdfc.glsl.functions import Functions, Role
+from sdfc.glsl.live import Live
+from sdfc.plan.steps import All, Any, Ball, Blend, BlendNode, BlendTree, BlendUnion, Closed, Part, Step, Tangent, Within
+from sdfc.shape.material import Material
+from sdfc.shape.matrix import Matrix
+
+PROPERTIES = ("color", "metallic", "roughness", "emission", "transmission", "ior", "tint")
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceText:
+    """`structure` declares Surface and what makes and joins one; `function` is `Surface surface(vec3 p)`.
+
+    `properties` gives, for each of PROPERTIES, the GLSL text of it for a Surface `s`: a member, or a constant.
+    """
+
+    structure: str
+    function: str
+    properties: dict[str, str]
+
+
+class SurfaceWriter:
+    """Writes one scene's surface function."""
+
+    def __init__(
+        self, graph: FieldGraph, functions: Functions, live: Live, materials: list[Material], unpainted: Material
+    ) -> None:
+        self._graph = graph
+        self._functions = functions
+        self._live = live
+        self._materials = materials
+        self._unpainted = unpainted
+        self._names = {id(m): f"{_identifier(m.name)}_surface" for m in materials}
+        self._varying = [p for p in PROPERTIES if len({_property(m, p).id for m in materials}) > 1]
+        self._p = graph.input("p")
+        self._count = 0
+        self._blends = False
+
+    def write(self, root: Step) -> SurfaceText:
+        body = Body(self._live)
+        result = self._fold(root, body)
+        body.add(f"return {result};")
+        function = "\n".join(["Surface surface(vec3 p) {", *body.lines, "}", ""])
+        return SurfaceText(self._structure(), function, self._properties())
+
+    # declarations
+
+    def _structure(self) -> str:
+        members = ["vec4 field;  // gradient and value", "float material;"]
+        members += [f"{type_name(_property(self._materials[0], p).type)} {p};" for p in self._varying]
+        lines = ["struct Surface {", *(f"    {m}" for m in members), "};", ""]
+        lines += [
+            "Surface nearer(Surface a, Surface b) { if (b.field.w < a.field.w) return b; return a; }",
+            "Surface farther(Surface a, Surface b) { if (b.field.w > a.field.w) return b; return a; }",
+            "",
+        ]
+        for index, material in enumerate(self._materials):
+            lines += self._constructor(index, material)
+        return "\n".join(lines + (self._mixing() if self._blends else []))
+
+    def _constructor(self, index: int, material: Material) -> list[str]:
+        body = Body(self._live)
+        values = body.texts([_property(material, p) for p in self._varying])
+        arguments = ", ".join(["field", f"{index}.0", *values])
+        return [
+            f"Surface {self._names[id(material)]}(vec4 field) {{",
+            *body.lines,
+            f"    return Surface({arguments});",
+            "}",
+            "",
+        ]
+
+    def _mixing(self) -> list[str]:
+        mixed = ["field", "w.y > w.x ? b.material : a.material", *(f"mix(a.{p}, b.{p}, share)" for p in self._varying)]
+        return [
+            "// a blend: w holds the derivatives by a and b, and the value",
+            "Surface blended(Surface a, Surface b, vec3 w) {",
+            "    float share = w.y / max(w.x + w.y, 1e-6);",
+            "    vec4 field = vec4(w.x * a.field.xyz + w.y * b.field.xyz, w.z);",
+            f"    return Surface({', '.join(mixed)});",
+            "}",
+            "",
+        ]
+
+    def _properties(self) -> dict[str, str]:
+        body = Body(self._live)
+        texts = {}
+        for name in PROPERTIES:
+            fixed = _property(self._materials[0], name)
+            texts[name] = f"s.{name}" if name in self._varying else body.text(fixed)
+        assert not body.lines, "a property's value is a constant or a param"
+        return texts
+
+    # the tree
+
+    def _fold(self, step: Step, body: Body) -> str:
+        match step:
+            case Closed() | Ball():
+                return self._leaf(step.part, body, step.inside, Role.SURFACE)
+            case Tangent():
+                return self._leaf(step.part, body, True, Role.SURFACE)
+            case Blend():
+                return self._blend(step.tree, body)
+            case Within():
+                return self._fold(step.step, body)
+            case Any():
+                return self._joined("nearer", step.steps, body)
+            case All():
+                return self._joined("farther", step.steps, body)
+            case _:
+                assert_never(step)
+
+    def _joined(self, operation: str, steps: tuple[Step, ...], body: Body) -> str:
+        name = self._name()
+        if not steps:
+            body.add(f"Surface {name} = {self._names[id(self._materials[0])]}(vec4(0.0, 1.0, 0.0, FAR));")
+            return name
+        body.add(f"Surface {name} = {self._fold(steps[0], body)};")
+        for step in steps[1:]:
+            text = self._fold(step, body)
+            body.add(f"{name} = {operation}({name}, {text});")
+        return name
+
+    def _leaf(self, part: Part, body: Body, inside: bool, role: Role) -> str:
+        material = part.material or self._unpainted
+        q = body.point(own_point(part.inverse, self._p), f"q_{part.name}")
+        field = body.call(self._functions.of_part(part, role), [q])
+        if part.inverse is not None and not _is_translation(part.inverse):
+            name = f"g_{part.name}{'' if inside else '_cut'}"
+            body.declare(Type.VEC4, name, field, part.span)
+            field = body.text(self._turned(part, name))
+        elif not (part.stretch.is_constant and part.stretch.number == 1.0):
+            field = f"{body.text(part.stretch)} * {field}"
+        return f"{self._names[id(material)]}({'' if inside else '-'}{field})"
+
+    def _turned(self, part: Part, name: str) -> Expr:
+        """The gradient in the scene's space: A^T g for the map p -> A p + b to the part's own space."""
+        assert part.inverse is not None
+        own = self._graph.input(name, Type.VEC4)
+        a = part.inverse.linear
+        zero = self._graph.constant(0.0)
+        columns = [(a[0][j], a[1][j], a[2][j]) for j in range(3)]
+        transposed = Matrix((columns[0], columns[1], columns[2]), (zero, zero, zero))
+        g = transposed.direction(own.swizzle("xyz"))
+        return self._graph.vector(g[0], g[1], g[2], own[3]) * part.stretch
+
+    def _blend(self, tree: BlendTree, body: Body) -> str:
+        match tree:
+            case Tangent():
+                return self._leaf(tree.part, body, True, Role.DISTANCE_SURFACE)
+            case BlendUnion():
+                texts = [self._blend(t, body) for t in tree.operands]
+                result = texts[0]
+                for text in texts[1:]:
+                    result = f"nearer({result}, {text})"
+                return result
+            case BlendNode():
+                return self._blend_node(tree, body)
+            case _:
+                assert_never(tree)
+
+    def _blend_node(self, tree: BlendNode, body: Body) -> str:
+        self._blends = True
+        first, second, name = self._name(), self._name(), self._name()
+        body.add(f"Surface {first} = {self._blend(tree.first, body)};")
+        body.add(f"Surface {second} = {self._blend(tree.second, body)};")
+        weights = body.call(self._functions.weights(tree.shape), [f"{first}.field.w", f"{second}.field.w"])
+        body.add(f"Surface {name} = blended({first}, {second}, {weights});", tree.shape.span)
+        return name
+
+    def _name(self) -> str:
+        self._count += 1
+        return f"s{self._count}"
+
+
+def _property(material: Material, name: str) -> Expr:
+    value = getattr(material, name)
+    assert isinstance(value, Expr)
+    return value
+
+
+def _identifier(name: str) -> str:
+    return "".join(c if c.isalnum() else "_" for c in name).strip("_") or "material"
+
+
+def _is_translation(matrix: Matrix) -> bool:
+    return all(
+        e.is_constant and e.number == (1.0 if i == j else 0.0)
+        for i, row in enumerate(matrix.linear)
+        for j, e in enumerate(row)
+    )

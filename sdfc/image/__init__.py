@@ -1,0 +1,1 @@
+"""Image files: PNG, OpenEXR and NumPy, encoded in memory and written atomically."""

@@ -1,0 +1,97 @@
+"""What one file is read into: the graphs, the standard library, and what there is to tell the author."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from sdfc.diagnostics import Diagnostic, InternalError, Source, Span
+from sdfc.field.graph import Expr, FieldGraph, Operand
+from sdfc.openscad.generators import Map3
+from sdfc.openscad.polytope import Plane, Point
+from sdfc.scene.library import Library
+from sdfc.shape.definition import Argument
+from sdfc.shape.graph import Affine, Shape, ShapeGraph
+from sdfc.shape.material import Material
+from sdfc.shape.matrix import Matrix, inverse, matrix
+
+Y_TO_Z: Map3 = ((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, -1.0, 0.0), (0.0, 1.0, 0.0, 0.0))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Context:
+    """Builds shapes at places of one source."""
+
+    source: Source
+    values: FieldGraph
+    shapes: ShapeGraph
+    library: Library
+    warnings: list[Diagnostic] = field(default_factory=list)
+    materials: dict[tuple[float, ...], Material] = field(default_factory=dict)
+
+    def warn(self, message: str, span: Span, hint: str | None = None) -> None:
+        self.warnings.append(Diagnostic(message, span, hint, "warning"))
+
+    def apply(self, name: str, span: Span, *children: Shape, **arguments: Argument) -> Shape:
+        """A standard definition; parameters that are not given have their defaults."""
+        definition = self.library.definition(name)
+        if definition is None:
+            raise InternalError(f"the standard library has no '{name}'")
+        environment: dict[str, Argument] = {}
+        for parameter in definition.values:
+            given = arguments.pop(parameter.name, None)
+            if given is None and parameter.default is not None:
+                given = parameter.default(environment)
+            if given is None:
+                raise InternalError(f"'{name}' needs '{parameter.name}'")
+            environment[parameter.name] = given
+        if arguments:
+            raise InternalError(f"'{name}' has no '{next(iter(arguments))}'")
+        return self.shapes.apply(definition, environment.values(), children, span)
+
+    def number(self, value: float) -> Expr:
+        return self.values.constant(value)
+
+    def vector(self, components: Sequence[float]) -> Expr:
+        return self.values.constant(*components)
+
+    def moved(self, move: Map3, child: Shape, span: Span) -> Shape:
+        """The child under an affine map; a map of a map is one, and the identity none."""
+        if move == ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0)):
+            return child
+        rows: list[list[Operand]] = [list(row[:3]) for row in move]
+        forward = matrix(self.values, rows, [row[3] for row in move])
+        if isinstance(child, Affine):
+            forward, child = forward.after(child.forward), child.child
+        return self.shapes.affine(forward, inverse(forward), child, span)
+
+    def raised(self, child: Shape, height: float, span: Span) -> Shape:
+        """The child, made along y, stood up along z and moved up."""
+        (a, b, (c, d, e, _)) = Y_TO_Z
+        return self.moved((a, b, (c, d, e, height)), child, span)
+
+    def box(self, lo: Point, hi: Point, span: Span) -> Shape:
+        """An upright box between two corners."""
+        size = [h - l for l, h in zip(lo, hi, strict=True)]
+        x, y, z = (0.5 * (l + h) for l, h in zip(lo, hi, strict=True))
+        shape = self.apply("box", span, size=self.vector(size))
+        return self.moved(((1, 0, 0, x), (0, 1, 0, y), (0, 0, 1, z)), shape, span)
+
+    def planes(self, planes: Sequence[Plane], span: Span) -> Shape:
+        """All that is under every plane; it may have no end."""
+        if len(planes) == 1:
+            return self.apply("plane", span, normal=self.vector(planes[0][0]), offset=self.number(planes[0][1]))
+        return self.apply(
+            "convex_polyhedron",
+            span,
+            normals=tuple(self.vector(n) for n, _ in planes),
+            offsets=tuple(self.number(d) for _, d in planes),
+        )
+
+    def polytope(self, corners: Sequence[Point], planes: Sequence[Plane], span: Span) -> Shape:
+        """A convex solid: the box around it gives its bounds and its upright faces; its other planes cut that."""
+        lo = (min(p[0] for p in corners), min(p[1] for p in corners), min(p[2] for p in corners))
+        hi = (max(p[0] for p in corners), max(p[1] for p in corners), max(p[2] for p in corners))
+        box = self.box(lo, hi, span)
+        slanted = [(n, d) for n, d in planes if max(map(abs, n)) < 1.0 - 1e-12]
+        return self.shapes.intersection((box, self.planes(slanted, span)), span) if slanted else box

@@ -1,0 +1,146 @@
+"""What the convex hull of a solid is spanned by: points, balls and discs. Asked for only under `hull` and `minkowski`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TypeAlias, assert_never
+
+from sdfc.openscad.polytope import Point
+from sdfc.openscad.refusal import Refusal
+
+Map3: TypeAlias = tuple[tuple[float, float, float, float], ...]  # three rows: linear part, offset
+
+SIMILAR = 1e-4  # relative: the matrices of a .csg file have six digits
+
+
+@dataclass(frozen=True, slots=True)
+class Generator:
+    """A point (radius 0), a ball (no axis) or a disc (unit axis)."""
+
+    center: Point
+    radius: float = 0.0
+    axis: Point | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Spanned:
+    """Made when asked for. May raise Refusal."""
+
+    make: Callable[[], Sequence[Generator]] = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mapped:
+    """Each generator of the child replaced by its image."""
+
+    image: Callable[[Generator], Sequence[Generator]] = field(repr=False)
+    child: Span3 = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Together:
+    children: tuple[Span3, ...] = field(repr=False)
+
+
+Span3: TypeAlias = Spanned | Mapped | Together
+
+
+def refused(message: str) -> Spanned:
+    """For a solid whose hull is not known."""
+
+    def make() -> Sequence[Generator]:
+        raise Refusal(message)
+
+    return Spanned(make)
+
+
+def generators(root: Span3) -> list[Generator]:
+    """All of them, in order, each once. Iterative: depth is no limit."""
+    results: list[list[Generator]] = []
+    stack: list[tuple[Span3, bool]] = [(root, False)]
+    while stack:
+        node, expanded = stack.pop()
+        match node:
+            case Spanned():
+                results.append(list(node.make()))
+            case Mapped() if expanded:
+                results.append([image for g in results.pop() for image in node.image(g)])
+            case Mapped():
+                stack += [(node, True), (node.child, False)]
+            case Together() if expanded:
+                count = len(node.children)
+                parts = results[len(results) - count :]
+                del results[len(results) - count :]
+                results.append([g for part in parts for g in part])
+            case Together():
+                stack.append((node, True))
+                stack.extend((child, False) for child in reversed(node.children))
+            case _:
+                assert_never(node)
+    return list(dict.fromkeys(results[0]))
+
+
+def moved(move: Map3, generator: Generator) -> Generator:
+    """The image under an affine map, where it is a point, a ball or a disc again."""
+    center = moved_point(move, generator.center)
+    if generator.radius == 0.0:
+        return Generator(center)
+    if generator.axis is None:
+        factor = similarity(move)
+        if factor is None:
+            raise Refusal("the hull of a stretched ball has no exact form")
+        return Generator(center, generator.radius * factor)
+    return _moved_disc(move, generator, center, generator.axis)
+
+
+def _moved_disc(move: Map3, disc: Generator, center: Point, axis: Point) -> Generator:
+    u, v = frame(axis)
+    a, b = _direction(move, u), _direction(move, v)
+    if abs(_norm(a) - _norm(b)) > SIMILAR * _norm(a) or abs(_dot(a, b)) > SIMILAR * _norm(a) * _norm(b):
+        raise Refusal("the hull of a stretched disc has no exact form")
+    normal = cross(a, b)
+    size = _norm(normal)
+    return Generator(center, disc.radius * math.sqrt(size), (normal[0] / size, normal[1] / size, normal[2] / size))
+
+
+def moved_point(move: Map3, p: Point) -> Point:
+    x, y, z = (r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + r[3] for r in move)
+    return x, y, z
+
+
+def _direction(move: Map3, p: Point) -> Point:
+    x, y, z = (r[0] * p[0] + r[1] * p[1] + r[2] * p[2] for r in move)
+    return x, y, z
+
+
+def similarity(move: Map3) -> float | None:
+    """The factor of a map that keeps angles; None for any other."""
+    columns = [(move[0][j], move[1][j], move[2][j]) for j in range(3)]
+    factor = abs(_dot(columns[0], cross(columns[1], columns[2]))) ** (1.0 / 3.0)
+    skew = [abs(_norm(c) - factor) * factor for c in columns]
+    skew += [abs(_dot(columns[i], columns[(i + 1) % 3])) for i in range(3)]
+    return factor if max(skew) <= SIMILAR * factor * factor else None
+
+
+def frame(axis: Point) -> tuple[Point, Point]:
+    """Two unit vectors that make a right-handed frame with a unit axis."""
+    x, y, z = axis
+    helper = (1.0, 0.0, 0.0) if abs(x) < 0.6 else (0.0, 1.0, 0.0)
+    u = cross(helper, axis)
+    size = _norm(u)
+    u = (u[0] / size, u[1] / size, u[2] / size)
+    return u, cross(axis, u)
+
+
+def cross(a: Point, b: Point) -> Point:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _dot(a: Point, b: Point) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _norm(a: Point) -> float:
+    return math.hypot(*a)

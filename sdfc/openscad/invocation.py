@@ -1,0 +1,125 @@
+"""One call as its module sees it: arguments by name, children made already, and the place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sdfc.diagnostics import SceneError, Span, scene_error
+from sdfc.openscad.context import Context
+from sdfc.openscad.part import Flat, Part, Solid
+from sdfc.openscad.syntax import Argument, Call, Value
+
+FACETS_THAT_COUNT = 50  # an explicit $fn below this means the polygon; from here on it stands for the curve
+MOST_FACETS = 10_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Invocation:
+    """`positional`: the names that arguments without a name have, in order. `is_painted`: a colour outside of it rules."""
+
+    call: Call
+    context: Context
+    children: Sequence[Part | None]
+    positional: tuple[str, ...] = ()
+    is_painted: bool = False
+
+    @property
+    def span(self) -> Span:
+        return self.call.span(self.context.source)
+
+    def argument(self, name: str) -> Argument | None:
+        """The last argument of that name, as in OpenSCAD."""
+        found = None
+        unnamed = iter(self.positional)
+        for argument in self.call.arguments:
+            if (argument.name or next(unnamed, None)) == name:
+                found = argument
+        return found
+
+    def place(self, argument: Argument) -> Span:
+        return Span(self.context.source, argument.start, argument.end)
+
+    def value(self, name: str) -> Value:
+        found = self.argument(name)
+        return None if found is None else found.value
+
+    def wrong(self, name: str, expected: str) -> SceneError:
+        found = self.argument(name)
+        place = self.span if found is None else self.place(found)
+        return scene_error(f"`{name}` of `{self.call.name}` must be {expected}", place)
+
+    def number(self, name: str, default: float) -> float:
+        """May be infinite or not a number, as OpenSCAD writes them."""
+        match self.value(name):
+            case None:
+                return default
+            case float(value):
+                return value
+            case _:
+                raise self.wrong(name, "a number")
+
+    def flag(self, name: str) -> bool:
+        match self.value(name):
+            case None:
+                return False
+            case bool(value):
+                return value
+            case float(value):
+                return value != 0.0
+            case _:
+                raise self.wrong(name, "true or false")
+
+    def numbers(self, name: str, count: int, default: float) -> tuple[float, ...]:
+        """A vector; one number stands for all components."""
+        match self.value(name):
+            case None:
+                return (default,) * count
+            case float(value):
+                return (value,) * count
+            case tuple(values) if len(values) == count and all(type(v) is float for v in values):
+                return values  # type: ignore[return-value]
+            case _:
+                raise self.wrong(name, f"a number or a list of {count} numbers")
+
+    def points(self, name: str, size: int) -> list[tuple[float, ...]]:
+        """A list of points. They must be finite."""
+        match self.value(name):
+            case tuple(rows):
+                made = [_vector(row) for row in rows]
+                if all(len(row) == size and all(map(math.isfinite, row)) for row in made):
+                    return made
+        raise self.wrong(name, f"a list of points, each of {size} finite numbers")
+
+    def indices(self, name: str, count: int) -> list[tuple[int, ...]]:
+        """A list of lists of indices below `count`."""
+        match self.value(name):
+            case tuple(rows):
+                made = [_vector(row) for row in rows]
+                if all(0.0 <= index < count for row in made for index in row):
+                    return [tuple(int(index) for index in row) for row in made]
+        raise self.wrong(name, f"a list of lists of indices, each from 0 to {count - 1}")
+
+    def facets(self) -> int | None:
+        """How many pieces a full circle has, where the file says so and few; None means the true curve."""
+        count = self.number("$fn", 0.0)
+        if not 0.0 < count < FACETS_THAT_COUNT:
+            return None
+        return max(3, int(count))
+
+    def solids(self) -> list[Solid]:
+        """The children in space, without nothings. Raises SceneError for one in the plane."""
+        made = [child for child in self.children if isinstance(child, Solid)]
+        if any(isinstance(child, Flat) for child in self.children):
+            raise scene_error(f"`{self.call.name}` works in space, and this child is in the plane", self.span)
+        return made
+
+
+def _vector(row: Value) -> tuple[float, ...]:
+    """The numbers of a list; a NaN, which no check lets through, for anything else."""
+    match row:
+        case tuple(items):
+            return tuple(item if type(item) is float else math.nan for item in items)
+        case _:
+            return (math.nan,)

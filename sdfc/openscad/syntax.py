@@ -1,0 +1,35 @@
+"""What a `.csg` file says: nested calls. Places are character offsets; the source is known to whoever reads them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from sdfc.diagnostics import Source, Span
+
+Value: TypeAlias = "float | bool | str | None | tuple[Value, ...]"  # None is OpenSCAD's undef
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Argument:
+    """`name = value`, or a value alone."""
+
+    name: str | None
+    value: Value
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Call:
+    """`name(arguments) { children }`, with its modifiers (`%`, `#`, `!`, `*`) in front. `start` to `end` is the name."""
+
+    name: str
+    modifiers: str
+    arguments: tuple[Argument, ...] = field(repr=False)
+    children: tuple[Call, ...] = field(repr=False)
+    start: int
+    end: int
+
+    def span(self, source: Source) -> Span:
+        return Span(source, self.start, self.end)

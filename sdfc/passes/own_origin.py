@@ -1,0 +1,68 @@
+"""The scene in an origin and a unit of its own, so that float32 has all its digits wherever the author put it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from sdfc.facts.bounds import Bounds
+from sdfc.facts.box import Box, nothing
+from sdfc.field.graph import FieldGraph
+from sdfc.shape.graph import Affine, Apply, Shape, ShapeGraph, children_of
+from sdfc.shape.matrix import scaling, translation
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """The scene's own coordinates: (p - centre) / radius."""
+
+    centre: tuple[float, float, float]
+    radius: float
+    box: Box  # of the finite parts, in the author's coordinates
+    is_finite: bool  # whether the box holds the whole scene
+
+
+def frame_of(root: Shape, bounds: Bounds) -> Frame:
+    """From the scene's box, or, where that is infinite (a floor), from the box of its finite parts."""
+    whole = bounds.box(root)
+    box = whole if whole.is_finite else _finite_parts(root, bounds)
+    if not box.is_finite or box.radius == 0.0:
+        centre = box.centre if box.is_finite else (0.0, 0.0, 0.0)
+        return Frame((centre[0], centre[1], centre[2]), 1.0, Box((-1.0,) * 3, (1.0,) * 3), False)
+    x, y, z = box.centre
+    return Frame((x, y, z), box.radius, box, whole.is_finite)
+
+
+def own_origin(root: Shape, graph: ShapeGraph, values: FieldGraph, frame: Frame) -> Shape:
+    """Afterwards the scene lies in the unit ball (its finite parts do)."""
+    x, y, z = frame.centre
+    forward = scaling(values, *(3 * [1.0 / frame.radius])).after(translation(values, -x, -y, -z))
+    inverse = translation(values, x, y, z).after(scaling(values, *(3 * [frame.radius])))
+    return graph.affine(forward, inverse, root, root.span)
+
+
+def _finite_parts(root: Shape, bounds: Bounds) -> Box:
+    """The box of all nodes with a finite box that no such node holds, in the root's coordinates."""
+    result = nothing()
+    stack: list[tuple[Shape, list[Affine]]] = [(root, [])]
+    seen: set[tuple[int, ...]] = set()
+    while stack:
+        shape, path = stack.pop()
+        key = (shape.id, *(a.id for a in path))
+        if key in seen:
+            continue
+        seen.add(key)
+        box = bounds.box(shape)
+        if box.is_finite:
+            for affine in reversed(path):
+                box = bounds.moved(affine.forward, box)
+            result = result.hull(box) if all(map(math.isfinite, (*box.lo, *box.hi))) else result
+            continue
+        match shape:
+            case Affine():
+                stack.append((shape.child, [*path, shape]))
+            case Apply():
+                pass  # an operation may move its children anywhere
+            case _:
+                stack.extend((c, path) for c in children_of(shape))
+    return result

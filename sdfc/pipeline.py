@@ -1,0 +1,199 @@
+"""The compiler as one list of named steps: text to Scene, Scene to normal form, normal form to plan, plan to GLSL."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from sdfc.diagnostics import InternalError, SceneError, Source
+from sdfc.facts.bounds import Bounds
+from sdfc.facts.lipschitz import Lipschitz
+from sdfc.facts.ranges import Ranges
+from sdfc.passes.flatten import flatten
+from sdfc.passes.negate import negate
+from sdfc.passes.own_origin import Frame, frame_of, own_origin
+from sdfc.passes.paint import paint
+from sdfc.passes.place import place
+from sdfc.passes.prune import prune
+from sdfc.plan.plan import Plan
+from sdfc.plan.prove import Prover
+from sdfc.plan.setting import Setting, setting_of
+from sdfc.plan.view import CameraChange, uniforms_of
+from sdfc.scene.library import Library
+from sdfc.scene.model import Scene
+from sdfc.shape.graph import Shape
+from sdfc.shape.material import Material
+from sdfc.tracers import TRACERS
+
+Kind = Literal["sdf", "csg"]
+_DEPTH = 400_000  # Python frames: chains of thousands of operations; pure Python calls need no C stack
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What may be asked of the compiler."""
+
+    tracer: str = "proven"
+
+
+def tracer_names() -> tuple[str, ...]:
+    """Every tracer there is."""
+    return tuple(TRACERS)
+
+
+@contextmanager
+def deep_recursion() -> Iterator[None]:
+    """Room for recursion over deep scenes."""
+    before = sys.getrecursionlimit()
+    sys.setrecursionlimit(max(before, _DEPTH))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(before)
+
+
+def load(source: Source, folder: Path | None = None, kind: Kind = "sdf") -> Scene:
+    """Read a scene. Raises SceneError with everything that is wrong with it."""
+    with deep_recursion():
+        if kind == "csg":
+            from sdfc.openscad.load import load as load_csg
+
+            return load_csg(source)
+        from sdfc.scene.elaborate import elaborate
+
+        return elaborate(source, folder)
+
+
+@dataclass(frozen=True, slots=True)
+class Pass:
+    """A step of the compiler, with its reason."""
+
+    name: str
+    why: str
+    run: Callable[[Shape, Workshop], Shape]
+
+
+@dataclass(slots=True)
+class Workshop:
+    """What passes may ask for: the scene's graphs and facts."""
+
+    scene: Scene
+    bounds: Bounds
+    ranges: Ranges
+    library: Library
+    frame: Frame | None = None
+
+    def framed(self, root: Shape) -> Shape:
+        self.frame = frame_of(root, self.bounds)
+        return own_origin(root, self.scene.shapes, self.scene.values, self.frame)
+
+
+PASSES = (
+    Pass("flatten", "fewer nodes for every pass that follows", lambda s, w: flatten(s, w.scene.shapes)),
+    Pass("paint", "while `a - b` still tells which part is cut", lambda s, w: paint(s, w.scene.shapes)),
+    Pass("own_origin", "before transforms are composed: one more to compose", lambda s, w: w.framed(s)),
+    Pass("place", "leaves must be placed to be bounded", lambda s, w: place(s, w.scene.shapes, w.scene.values)),
+    Pass("negate", "step rules know leaves and their complements", lambda s, w: negate(s, w.scene.shapes, w.library.definition)),
+    Pass("prune", "boxes are known now", lambda s, w: prune(s, w.scene.shapes, w.bounds)),
+    Pass("flatten again", "De Morgan and pruning made new nests", lambda s, w: flatten(s, w.scene.shapes)),
+)
+
+
+def normalise(scene: Scene, after: str | None = None) -> tuple[Shape, Workshop]:
+    """The scene's shape after all passes, or after the one named."""
+    ranges = Ranges({p.name: _range_of(p.default, p.low, p.high) for p in scene.params})
+    workshop = Workshop(scene, Bounds(ranges), ranges, Library(scene.values))
+    root = scene.root
+    with deep_recursion():
+        for step in PASSES:
+            root = step.run(root, workshop)
+            if step.name == after:
+                break
+    return root, workshop
+
+
+def _range_of(
+    default: tuple[float, ...], low: float | None, high: float | None
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    if low is None or high is None:
+        return default, default
+    return (low,) * len(default), (high,) * len(default)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Compiled:
+    """A scene, ready to be printed or rendered."""
+
+    scene: Scene
+    plan: Plan
+    setting: Setting
+    shape: Shape  # in normal form, in the scene's own coordinates
+    frame: Frame
+    _texts: dict[tuple[str, str], str] = field(default_factory=dict, repr=False)
+
+    @property
+    def materials(self) -> tuple[str, ...]:
+        """Names, by the index that the probe's material image holds."""
+        return tuple(m.name for m in self.plan.materials)
+
+    def glsl(self, entry: str = "picture", stage: str = "fragment") -> str:
+        """One complete shader: `picture` (sRGB), `radiance` (linear) or `probe` (depth, normals, ...)."""
+        from sdfc.glsl.assembly import assemble
+
+        key = (entry, stage)
+        if key not in self._texts:
+            with deep_recursion():
+                self._texts[key] = assemble(self.scene.values, self.plan, self.setting, entry, stage)
+        return self._texts[key]
+
+    def uniforms(
+        self,
+        view: CameraChange,
+        params: Mapping[str, tuple[float, ...]],
+        size: tuple[int, int],
+        jitter: tuple[float, float] = (0.0, 0.0),
+    ) -> dict[str, float | tuple[float, ...]]:
+        """Values for every uniform of the shaders, made in float64."""
+        return uniforms_of(self.scene, self.setting, self.frame, view, params, size, jitter)
+
+    def explanation(self) -> str:
+        """What was proved of the scene and how it will be traced, with reasons."""
+        from sdfc.plan.explain import explain
+
+        return explain(self.scene, self.plan, self.frame)
+
+
+def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:  # noqa: B008 (frozen)
+    """Prove what can be proved, choose, and be ready to print. Raises SceneError where nothing can be proved."""
+    root, workshop = normalise(scene)
+    frame = workshop.frame
+    assert frame is not None
+    try:
+        with deep_recursion():
+            lipschitz = Lipschitz(workshop.ranges, workshop.bounds)
+            prover = Prover(scene.values, workshop.bounds, lipschitz)
+            steps = prover.prove(root)
+            setting = setting_of(scene, frame)
+            plan = Plan(
+                steps,
+                TRACERS[options.tracer],
+                _materials(prover, setting.unpainted),
+                prover.slopes(needed=TRACERS[options.tracer].needs_map),
+                frame.radius,
+                frame.centre,
+            )
+    except RecursionError as error:
+        raise InternalError("the scene is nested too deeply to compile") from error
+    return Compiled(scene, plan, setting, root, frame)
+
+
+def _materials(prover: Prover, unpainted: Material) -> tuple[Material, ...]:
+    found = dict.fromkeys(part.material or unpainted for part in prover.parts)
+    return tuple(found) or (unpainted,)
+
+
+__all__ = ["Compiled", "Kind", "Options", "SceneError", "compile_scene", "load", "normalise", "tracer_names"]

@@ -1,0 +1,53 @@
+"""What was proved, and how each part will be traced, in words."""
+
+from __future__ import annotations
+
+from typing import assert_never
+
+from sdfc.passes.own_origin import Frame
+from sdfc.plan.plan import Plan
+from sdfc.plan.steps import All, Any, Ball, Blend, Closed, Step, Tangent, Within, is_closed, leaves_of
+from sdfc.scene.model import Scene
+
+
+def explain(scene: Scene, plan: Plan, frame: Frame) -> str:
+    """Facts, the rule of each part with its reason, and what was left out."""
+    leaves = leaves_of(plan.root)
+    closed = sum(isinstance(leaf, Closed) for leaf in leaves)
+    centre = ", ".join(f"{c:g}" for c in frame.centre)
+    extent = "holds the whole scene" if frame.is_finite else "holds its finite parts; the scene itself has no end"
+    lines = [
+        f"scene: {scene.source.name}",
+        f"bounds: centre [{centre}], radius {frame.radius:g}: {extent}",
+        f"tracer: {plan.tracer.name}. {plan.tracer.doc} ({plan.tracer.source})",
+        f"guarantee: {plan.tracer.guarantee}",
+        f"parts: {len(leaves)}, of which {closed} with closed-form ray intervals"
+        + (": no marching at all" if is_closed(plan.root) else ""),
+        "steps:",
+        *_tree(plan.root, 1),
+    ]
+    return "\n".join(lines)
+
+
+def _tree(step: Step, depth: int) -> list[str]:
+    pad = "  " * depth
+    match step:
+        case Any() | All():
+            name = "union: the nearest of" if isinstance(step, Any) else "intersection: the farthest of"
+            return [f"{pad}{name}", *(line for s in step.steps for line in _tree(s, depth + 1))]
+        case Within():
+            return [f"{pad}within {step.name}: outside it, the box's own interval", *_tree(step.step, depth + 1)]
+        case Closed():
+            side = "" if step.inside else "complement of "
+            return [f"{pad}{side}{step.part.name} ({step.part.span}): closed form, {step.intervals} interval(s) a ray"]
+        case Tangent():
+            return [f"{pad}{step.part.name} ({step.part.span}): tangents, its function is convex"]
+        case Ball():
+            side = "" if step.inside else "complement of "
+            reason = f"Lipschitz balls, constant {step.lipschitz:.4g}: curvature unknown"
+            return [f"{pad}{side}{step.part.name} ({step.part.span}): {reason}"]
+        case Blend():
+            reason = "the blend of its parts' tangents, which is concave and below it"
+            return [f"{pad}{step.part.name} ({step.part.span}): {reason}"]
+        case _:
+            assert_never(step)

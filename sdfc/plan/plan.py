@@ -1,0 +1,34 @@
+"""Everything that is decided before text is written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sdfc.plan.steps import Closed, Step, leaves_of
+from sdfc.shape.material import Material
+from sdfc.tracers.record import Tracer
+
+# Units of the scene's own radius. A ray's intervals are right to about three roundings of numbers up to one.
+GROW = 2.0**-22
+CUT = 2.0**-20
+SMALLEST_TOLERANCE = 2.0**-20  # eight roundings
+FINE = 1.0 / 64.0  # of a pixel's half
+LIFT = 2.0**-17  # how far shadow rays start above the surface: clear of CUT and of rounding
+MOST_LOOPS = 60000  # llvmpipe stops all loops of an invocation together at 65 535 (GL.md 0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """The step tree, the tracer, and what the shader needs besides."""
+
+    root: Step
+    tracer: Tracer
+    materials: tuple[Material, ...]
+    slopes: dict[int, float]  # the Lipschitz constant of each part's formula, by id of the part
+    radius: float
+    centre: tuple[float, float, float]
+
+    @property
+    def events(self) -> int:
+        """How many ends of closed-form intervals there are: no loop of events runs longer than twice that."""
+        return sum(2 * leaf.intervals for leaf in leaves_of(self.root) if isinstance(leaf, Closed))

@@ -1,0 +1,219 @@
+"""From a normalised shape to its step tree: closed-form interval before tangent before Lipschitz ball, leaf by leaf."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+from typing import assert_never
+
+from sdfc.diagnostics import SceneError
+from sdfc.facts.bounds import Bounds
+from sdfc.facts.box import Box, everything
+from sdfc.facts.curvature import convex_shapes
+from sdfc.facts.lipschitz import Lipschitz
+from sdfc.field.graph import FieldGraph
+from sdfc.plan.steps import (
+    All,
+    Any,
+    Ball,
+    Blend,
+    BlendNode,
+    BlendTree,
+    BlendUnion,
+    Closed,
+    Part,
+    Step,
+    Tangent,
+    Within,
+)
+from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union
+from sdfc.shape.lower import lower_ray
+from sdfc.shape.material import Material
+from sdfc.shape.matrix import Matrix
+from sdfc.shape.stretch import largest_stretch, smallest_stretch
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """A leaf of a normalised shape, unwrapped: Complement, Paint and Affine are at most one each, in that order."""
+
+    shape: Apply
+    affine: Affine | None
+    material: Material | None
+    inside: bool
+    placed: Shape  # with its Affine
+
+
+def unwrapped(shape: Shape) -> Leaf | None:
+    """The leaf that `shape` is, or None for a union, an intersection or Nothing."""
+    inside, material, affine = True, None, None
+    match shape:
+        case Complement():
+            inside, shape = False, shape.child
+        case _:
+            pass
+    match shape:
+        case Paint():
+            material, shape = shape.material, shape.child
+        case _:
+            pass
+    placed = shape
+    match shape:
+        case Affine():
+            affine, shape = shape, shape.child
+        case _:
+            pass
+    match shape:  # painted before it was placed
+        case Paint():
+            material, shape = material or shape.material, shape.child
+        case _:
+            pass
+    match shape:
+        case Apply():
+            return Leaf(shape, affine, material, inside, placed)
+        case _:
+            return None
+
+
+class Prover:
+    """Builds the step tree of one scene."""
+
+    def __init__(self, values: FieldGraph, bounds: Bounds, lipschitz: Lipschitz) -> None:
+        self._values = values
+        self._bounds = bounds
+        self._lipschitz = lipschitz
+        self._names: Counter[str] = Counter()
+        self._parts: dict[tuple[int, int], Part] = {}
+        self._convex: frozenset[int] = frozenset()
+        self._boxes = 0
+        self._leaves: list[Leaf] = []
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Every part there is, in the order of the scene."""
+        return tuple(self._parts.values())
+
+    def slopes(self, needed: bool) -> dict[int, float]:
+        """The Lipschitz constant of each part's formula, by the part's id; infinite where none is known, unless `needed`."""
+        found: dict[int, float] = {}
+        for leaf, part in zip(self._leaves, self.parts, strict=True):
+            try:
+                found[id(part)] = self._lipschitz.constant(leaf.placed, self._bounds.box(leaf.placed))
+            except SceneError:
+                if needed:
+                    raise
+                found[id(part)] = math.inf
+        return found
+
+    def prove(self, root: Shape) -> Step:
+        self._convex = convex_shapes(root)
+        return self._step(root, everything())
+
+    def _step(self, shape: Shape, domain: Box) -> Step:
+        match shape:
+            case Union():
+                return _any([self._step(c, domain) for c in shape.children])
+            case Intersection():
+                inner = domain.meet(self._bounds.box(shape))
+                return _all([self._step(c, inner) for c in shape.children])
+            case Nothing():
+                return Any(())
+            case Apply() | Affine() | Paint() | Complement():
+                leaf = unwrapped(shape)
+                assert leaf is not None, f"{shape} is not normalised"
+                return self._leaf(leaf, domain)
+            case _:
+                assert_never(shape)
+
+    def _leaf(self, leaf: Leaf, domain: Box) -> Step:
+        part = self.part(leaf)
+        claims = leaf.shape.definition.claims
+        if claims.ray is not None:
+            return Closed(part, self._intervals(leaf.shape), leaf.inside)
+        if leaf.inside and self._is_tangent(leaf.shape):
+            return Tangent(part)
+        tree = self._blend_tree(leaf) if leaf.inside else None
+        own = part.box if leaf.inside else everything()
+        where = own.meet(domain)
+        if where.is_empty:
+            return Any(()) if leaf.inside else self._ball(part, leaf, own)
+        step: Step = self._ball(part, leaf, where)
+        if tree is not None:
+            step = Blend(part, tree, self._lipschitz.constant(leaf.placed, where))
+        return self._within(where, step) if where.is_finite and leaf.inside else step
+
+    def _ball(self, part: Part, leaf: Leaf, where: Box) -> Ball:
+        return Ball(part, self._lipschitz.constant(leaf.placed, where), leaf.inside)
+
+    def _within(self, box: Box, step: Step) -> Within:
+        self._boxes += 1
+        # a little wider than the solid: its boundary belongs to it
+        return Within(f"bounds_{self._boxes}", box.widened(1e-5 * max(box.radius, 1e-3)), step)
+
+    def _is_tangent(self, shape: Apply) -> bool:
+        claims = shape.definition.claims
+        return claims.convex if shape.definition.is_primitive else shape.id in self._convex
+
+    def _blend_tree(self, leaf: Leaf) -> BlendTree | None:
+        """The operands of a smooth union, where all are convex functions in the scene's own space."""
+        return self._blend_of(leaf.shape, leaf) if leaf.affine is None else None
+
+    def _blend_of(self, shape: Shape, whole: Leaf) -> BlendTree | None:
+        leaf = unwrapped(shape)
+        if leaf is None:
+            match shape:
+                case Union():
+                    operands = [self._blend_of(c, whole) for c in shape.children]
+                    found = [o for o in operands if o is not None]
+                    return BlendUnion(tuple(found)) if len(found) == len(operands) else None
+                case _:
+                    return None
+        if not leaf.inside:
+            return None
+        if leaf.shape.id in self._convex:  # the formula itself: the blend is of formulas, not of gauges
+            return Tangent(self.part(leaf))
+        claims = leaf.shape.definition.claims
+        if claims.lowering is None or claims.dual is None or leaf.affine is not None or len(leaf.shape.children) != 2:
+            return None
+        if not leaf.shape.definition.name.startswith("smooth_union"):
+            return None
+        first, second = (self._blend_of(c, whole) for c in leaf.shape.children)
+        return None if first is None or second is None else BlendNode(leaf.shape, first, second)
+
+    def part(self, leaf: Leaf) -> Part:
+        """The part of a leaf: one for all its uses in the tree, so that it is computed once."""
+        key = (leaf.placed.id, id(leaf.material))
+        if key not in self._parts:
+            name = leaf.shape.definition.name
+            self._names[name] += 1
+            self._leaves.append(leaf)
+            self._parts[key] = self._part(leaf, f"{name}_{self._names[name]}")
+        return self._parts[key]
+
+    def _part(self, leaf: Leaf, name: str) -> Part:
+        one = self._values.constant(1.0)
+        inverse: Matrix | None = None
+        stretch = own_grow = one
+        if leaf.affine is not None:
+            inverse = leaf.affine.inverse
+            stretch = smallest_stretch(leaf.affine.forward)
+            own_grow = largest_stretch(inverse)
+        box = self._bounds.box(leaf.placed)
+        return Part(name, leaf.shape, inverse, stretch, own_grow, leaf.material, box, leaf.shape.span)
+
+    def _intervals(self, shape: Apply) -> int:
+        o, d = self._values.input("o"), self._values.input("d")
+        return len(lower_ray(shape, o, d, self._values.constant(0.0)))
+
+
+def _any(steps: list[Step]) -> Step:
+    flat = [s for step in steps for s in (step.steps if isinstance(step, Any) else (step,))]
+    return flat[0] if len(flat) == 1 else Any(tuple(flat))
+
+
+def _all(steps: list[Step]) -> Step:
+    if any(isinstance(s, Any) and not s.steps for s in steps):
+        return Any(())
+    flat = [s for step in steps for s in (step.steps if isinstance(step, All) else (step,))]
+    return flat[0] if len(flat) == 1 else All(tuple(flat))

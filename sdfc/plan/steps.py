@@ -1,0 +1,133 @@
+"""The step tree: for each part of a scene, the best rule that it can prove for how far a ray may go (ALGORITHMS B0, B1).
+
+Every rule answers one question, `next(t)`: the first parameter at or after t where the part may be solid. It answers t
+itself exactly where the ray is inside (or within tolerance of) the part. A union is the least of its parts' answers,
+an intersection the greatest; a ray hits where the tree answers t, and misses where it answers FAR.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from sdfc.diagnostics import Span
+from sdfc.facts.box import Box
+from sdfc.field.graph import Expr
+from sdfc.shape.graph import Apply
+from sdfc.shape.material import Material
+from sdfc.shape.matrix import Matrix
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """A leaf of the tree, placed: what is at `inverse(p)` is `shape` (a primitive, or an operation with all below it).
+
+    `stretch` times a value in the part's own space is a value in the scene's; `own_grow` times a length in the scene
+    is at least as long in the part's own space. `box` holds the part, in the scene's coordinates.
+    """
+
+    name: str
+    shape: Apply
+    inverse: Matrix | None
+    stretch: Expr
+    own_grow: Expr
+    material: Material | None
+    box: Box
+    span: Span
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Closed:
+    """A primitive whose ray intervals are known in closed form: exact events, no marching."""
+
+    part: Part
+    intervals: int
+    inside: bool = True  # False: its complement
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tangent:
+    """A convex function: the tangent's root is never past the surface (a Newton step that cannot overshoot)."""
+
+    part: Part
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ball:
+    """A field known to be Lipschitz: the empty ball around the point."""
+
+    part: Part
+    lipschitz: float
+    inside: bool = True
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Blend:
+    """A smooth union of convex functions: the blend of their tangents is concave, and below the field."""
+
+    part: Part  # the whole blend
+    tree: BlendTree
+    lipschitz: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BlendNode:
+    """A blend operation of two operands, by its definition (`shape.children` are the operands)."""
+
+    shape: Apply
+    first: BlendTree
+    second: BlendTree
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BlendUnion:
+    """A hard union inside a blend."""
+
+    operands: tuple[BlendTree, ...]
+
+
+BlendTree: TypeAlias = Tangent | BlendNode | BlendUnion
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Within:
+    """`step` matters only inside a box: outside, the box's own closed-form interval says how far to go."""
+
+    name: str
+    box: Box
+    step: Step
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Any:
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class All:
+    steps: tuple[Step, ...]
+
+
+Step: TypeAlias = Closed | Tangent | Ball | Blend | Within | Any | All
+
+
+def is_closed(step: Step) -> bool:
+    """Whether the whole tree is events: solved without marching."""
+    match step:
+        case Closed():
+            return True
+        case Tangent() | Ball() | Blend() | Within():
+            return False
+        case Any() | All():
+            return all(is_closed(s) for s in step.steps)
+
+
+def leaves_of(step: Step) -> list[Closed | Tangent | Ball | Blend]:
+    """The leaves, in order."""
+    match step:
+        case Closed() | Tangent() | Ball() | Blend():
+            return [step]
+        case Within():
+            return leaves_of(step.step)
+        case Any() | All():
+            return [leaf for s in step.steps for leaf in leaves_of(s)]

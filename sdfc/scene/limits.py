@@ -1,0 +1,36 @@
+"""How much a scene may ask of the compiler: each limit has its own error, so that no input hangs or fills the memory."""
+
+from __future__ import annotations
+
+from sdfc.diagnostics import Span, scene_error
+
+MOST_SHAPES = 200_000  # after loops, calls and tables are expanded
+MOST_STEPS = 1_000_000  # rounds of loops and calls of functions
+LONGEST_LOOP = 100_000
+LONGEST_LIST = 1_000  # given to one field: each element is printed in the shader
+MOST_ROWS = 100_000  # of a CSV
+LARGEST_FILE = 4 * 2**20  # bytes, of any file that is read
+MOST_FILES = 100
+DEEPEST_FRAMES = 60_000  # Python's own, while a scene is expanded
+
+
+class Budget:
+    """What is left to one elaboration."""
+
+    __slots__ = ("shapes", "steps")
+
+    def __init__(self) -> None:
+        self.shapes = 0
+        self.steps = 0
+
+    def shape(self, span: Span) -> None:
+        """One more shape."""
+        self.shapes += 1
+        if self.shapes > MOST_SHAPES:
+            raise scene_error(f"the scene has more than {MOST_SHAPES} shapes once it is expanded", span)
+
+    def step(self, span: Span) -> None:
+        """One more round of a loop, or call."""
+        self.steps += 1
+        if self.steps > MOST_STEPS:
+            raise scene_error(f"more than {MOST_STEPS} calls and rounds of loops are needed to expand the scene", span)

@@ -1,0 +1,123 @@
+"""Light that a surface sends on: the metallic-roughness model over GGX, conserving energy and reciprocal.
+
+GGX with the height-correlated Smith term (Walter 2007, Heitz 2014), Fresnel by Schlick (1994); the diffuse part gets what
+the specular part leaves, by Kelemen and Szirmay-Kalos (2001); light that bounces between the facets of a rough surface
+is given back after Kulla and Conty (2017). Their integrals are polynomials, fitted to this very model; tests integrate.
+"""
+
+import math
+from dataclasses import dataclass
+
+from sdfc.field.function import Function
+from sdfc.field.graph import Expr, FieldGraph, Type
+from sdfc.shade.vector import fifth_power, mix, normalize, polynomial, power, saturate, square
+
+ROUGHNESS_FLOOR = 0.09
+"""Smoother is drawn as this: the lights have no size, and a mirror would show them too small for any pixel."""
+DIELECTRIC = 0.04
+"""The reflectance at normal incidence of what is not metal (an index of 1.5)."""
+GRAZING = 1e-4
+"""The least cosine with the view: a normal of a visible surface turns away from the viewer only by rounding."""
+
+_LOST = (
+    (2.463, -6.018, 2.149, 0.535),
+    (-5.748, 21.017, -14.48, 2.652),
+    (3.43, -13.72, 11.133, -2.711),
+)
+"""1 - E(c, r), what GGX of one bounce loses, is the sum of row i, column j times r^(i + 2) c^j."""
+_LOST_MEAN = tuple(sum(2.0 * value / (j + 2) for j, value in enumerate(row)) for row in _LOST)
+"""Its mean over directions, 2 times the integral of (1 - E) c dc, term by term."""
+_DIELECTRIC_MEAN = (0.0848, -0.002, -0.1774, 0.1146)
+"""The mean reflectance of a dielectric, in powers of roughness."""
+
+SURFACE = (("color", Type.VEC3), ("metallic", Type.FLOAT), ("roughness", Type.FLOAT))
+"""The parameters, common to several functions, that say what the surface is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """Expressions of a surface's look, made safe: roughness not under the floor, everything in 0 .. 1."""
+
+    diffuse: Expr  # VEC3: what of the diffuse light is not absorbed
+    normal_reflectance: Expr  # VEC3: F0
+    metallic: Expr
+    roughness: Expr
+
+
+def surface(graph: FieldGraph) -> Surface:
+    """The surface that the INPUT nodes of `SURFACE` describe."""
+    color = saturate(graph.input("color"))
+    metallic = saturate(graph.input("metallic", Type.FLOAT))
+    roughness = graph.clamp(graph.input("roughness", Type.FLOAT), ROUGHNESS_FLOOR, 1.0)
+    return Surface(color * (1.0 - metallic), mix(graph.constant(*[DIELECTRIC] * 3), color, metallic), metallic, roughness)
+
+
+def lost(cosine: Expr, roughness: Expr) -> Expr:
+    """The energy that one bounce on GGX loses along `cosine`, were the facets perfect mirrors."""
+    rows = [polynomial(cosine, row) for row in _LOST]
+    return saturate(square(roughness) * (rows[0] + roughness * (rows[1] + roughness * rows[2])))
+
+
+def fresnel_share(cosine: Expr, roughness: Expr) -> Expr:
+    """B of E = F0 A + B: the reflectance along `cosine` that is there even for F0 = 0."""
+    exponent = 2.6 + 2.4 / (1.0 + 125.0 * roughness * square(roughness))
+    return power(saturate(1.0 - cosine), exponent) / (1.0 + square(roughness) * (7.0 + 15.0 * roughness))
+
+
+def dielectric_albedo(cosine: Expr, roughness: Expr) -> Expr:
+    """The reflectance along `cosine` of a surface that is not metal, which its diffuse part does without."""
+    return DIELECTRIC * (1.0 - lost(cosine, roughness)) + (1.0 - DIELECTRIC) * fresnel_share(cosine, roughness)
+
+
+def between_facets(look: Surface) -> Expr:
+    """The colour (VEC3) of light after two or more bounces between facets (Kulla and Conty 2017)."""
+    lost_mean = square(look.roughness) * polynomial(look.roughness, _LOST_MEAN)
+    fresnel_mean = look.normal_reflectance * (20.0 / 21.0) + 1.0 / 21.0
+    return square(fresnel_mean) * (1.0 - lost_mean) / (1.0 - fresnel_mean * lost_mean)
+
+
+def _microfacets(half: Expr, normal: Expr, n_l: Expr, n_v: Expr, alpha: Expr) -> Expr:
+    """D V: the distribution times the visibility (which has the denominator 4 (n·l) (n·v) in it)."""
+    graph = normal.graph
+    across = graph.cross(normal, half)
+    # sin² by the cross product: 1 - (n·h)² has no digits left in 32 bits where a smooth surface has its highlight
+    scaled = saturate(graph.dot(normal, half)) * alpha
+    spread = alpha / (graph.dot(across, across) + square(scaled) + 1e-12)
+    alpha_2 = square(alpha)
+    towards_light = n_v * graph.sqrt(square(n_l) * (1.0 - alpha_2) + alpha_2)
+    towards_view = n_l * graph.sqrt(square(n_v) * (1.0 - alpha_2) + alpha_2)
+    return square(spread) * (0.5 / math.pi) / (towards_light + towards_view)
+
+
+def reflect_light(graph: FieldGraph) -> Function:
+    """BRDF times the cosine with the light: multiply by the light's irradiance and by what the shadows leave."""
+    normal, view, light = graph.input("normal"), graph.input("view"), graph.input("light")
+    look = surface(graph)
+    n_l = saturate(graph.dot(normal, light))
+    n_v = graph.clamp(graph.dot(normal, view), GRAZING, 1.0)
+    half = normalize(view + light)
+    fresnel = fifth_power(saturate(1.0 - graph.dot(view, half)))
+    facets = mix(look.normal_reflectance, graph.constant(1.0, 1.0, 1.0), fresnel)
+    once = facets * _microfacets(half, normal, n_l, n_v, square(look.roughness))
+    lost_mean = square(look.roughness) * polynomial(look.roughness, _LOST_MEAN)
+    lost_both = lost(n_l, look.roughness) * lost(n_v, look.roughness)
+    again = between_facets(look) * (lost_both / (math.pi * graph.max(lost_mean, 1e-5)))
+    left = (1.0 - dielectric_albedo(n_l, look.roughness)) * (1.0 - dielectric_albedo(n_v, look.roughness))
+    diffuse = look.diffuse * (left / (math.pi * (1.0 - polynomial(look.roughness, _DIELECTRIC_MEAN))))
+    return Function(
+        "reflect_light",
+        (("normal", Type.VEC3), ("view", Type.VEC3), ("light", Type.VEC3), *SURFACE),
+        (diffuse + once + again) * n_l,
+        "BRDF times n·l (VEC3). Unit vectors: normal, view (to the eye), light (to the light).",
+    )
+
+
+def point_falloff(graph: FieldGraph) -> Function:
+    """What the distance leaves of a point light's intensity."""
+    offset = graph.input("offset")
+    return Function(
+        "point_falloff",
+        (("offset", Type.VEC3),),
+        1.0 / graph.max(graph.dot(offset, offset), 1e-8),
+        "1 / distance² for the vector from the surface to a point light, in scene units.",
+    )

@@ -1,0 +1,59 @@
+"""The parser's tables, kept between runs: making them from the grammar takes longer than parsing most scenes."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import pickle
+import sys
+import tempfile
+from pathlib import Path
+
+from lark import Lark, __version__
+
+
+def load(grammar: str, callbacks: object) -> Lark:
+    """An LALR parser of `grammar` that calls `callbacks` (methods named as its rules) as it reduces."""
+    path = _place(grammar)
+    kept = _kept(path, callbacks)
+    if kept is not None:
+        return kept
+    made = Lark(grammar, parser="lalr", transformer=callbacks)  # type: ignore[arg-type]
+    _keep(made, path)
+    return made
+
+
+def cache_folder() -> Path:
+    """Where sdfc keeps what it can make again."""
+    base = os.environ.get("XDG_CACHE_HOME", "")
+    return (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "sdfc"
+
+
+def _place(grammar: str) -> Path | None:
+    key = "\0".join([grammar, __version__, sys.version]).encode()
+    with contextlib.suppress(RuntimeError):  # no home folder
+        return cache_folder() / f"grammar-{hashlib.sha256(key).hexdigest()[:32]}.tables"
+    return None
+
+
+def _kept(path: Path | None, callbacks: object) -> Lark | None:
+    if path is None:
+        return None
+    try:
+        with path.open("rb") as file:
+            # what Lark.load does, which has no way to give the callbacks
+            return Lark.__new__(Lark)._load(pickle.load(file), transformer=callbacks)
+    except Exception:  # damaged in any way: a pickle raises anything. It is made and written again
+        return None
+
+
+def _keep(parser: Lark, path: Path | None) -> None:
+    """Written aside, then renamed: another process never sees half a file. A folder that cannot be written is no error."""
+    if path is None:
+        return
+    with contextlib.suppress(OSError):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
+            parser.save(file)
+        os.replace(file.name, path)

@@ -1,0 +1,60 @@
+{% for line in header %}
+// {{ line }}
+{% endfor %}
+
+uniform vec3 eye;     // in the scene's own coordinates: (p - centre) / radius
+uniform vec3 axis_x;  // to the right edge of the picture, to its upper edge, and ahead
+uniform vec3 axis_y;
+uniform vec3 axis_z;
+uniform vec4 window;  // width, height, and the sample's place in its pixel
+uniform vec3 cone;    // half a pixel: size at the eye, growth with the distance; 1 in perspective, 0 in parallel
+{% for param in params %}
+uniform {{ param.type }} {{ param.uniform }};  // {{ param.note }}
+{% endfor %}
+
+const float RADIUS = {{ radius }};  // the scene's own unit, and its own origin
+const vec3 CENTRE = {{ centre }};
+
+float steps = 0.0;
+float travelled = 0.0;  // along the path, to where the ray at hand has t = 0
+{% for param in params %}
+{{ param.type }} {{ param.name }};
+{% endfor %}
+{% for value in live %}
+{{ value.type }} {{ value.name }};
+{% endfor %}
+
+void prepare() {
+{% for param in params %}
+    {{ param.name }} = {{ param.uniform }};
+{% endfor %}
+{% for line in live_lines %}
+    {{ line }}
+{% endfor %}
+}
+
+{% include "lib/intervals.glsl" %}
+
+{% include "lib/tolerance.glsl" %}
+
+{% if needs_marching %}
+{% include "lib/marching.glsl" %}
+
+{% endif %}
+{% if needs_map_library %}
+{% include "lib/distance.glsl" %}
+
+{% endif %}
+{% include "lib/camera.glsl" %}
+
+{{ functions }}
+{% if map %}
+{{ map }}
+{% endif %}
+{{ trace.functions }}
+{% include tracer_template %}
+
+{% if surface %}
+{{ surface.structure }}
+{{ surface.function }}
+{% endif %}

@@ -1,0 +1,7 @@
+float box_distance(vec3 p, vec3 half_size) {
+    vec3 q = abs(p) - half_size;
+    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0);
+}
+
+// a value that is a bound inside a box (and a margin around it) only
+float within(float box, float value, float margin) { return box > margin ? box : value; }

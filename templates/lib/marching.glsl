@@ -1,0 +1,22 @@
+// Steps of what has no closed form: each answers with the next parameter that is worth a look, t itself for a hit.
+const int MOST_STEPS = {{ most_steps }};  // all loops of a pixel together stay below 65 535, where llvmpipe stops them
+
+// v: the value of a convex function and its slope along the ray; its tangent cannot overshoot
+float tangent(float t, vec2 v, float eps) {
+    float fall = 2.4e-7 - v.y;
+    return v.x <= eps ? t : fall > 0.0 ? t + (v.x - 0.5 * eps) / fall * 0.9999996 : FAR;
+}
+
+// nothing is nearer than r
+float ball(float t, float r, float eps) { return r <= eps ? t : t + r * 0.9999996; }
+
+// a part that matters only inside a box
+float inside(vec2 box, float t, float next) { return t < box.x ? box.x : next < box.y ? next : FAR; }
+
+vec2 box_interval(vec3 o, vec3 d, vec3 half_size) {
+    vec3 safe = mix(d, vec3(1e-18), lessThan(abs(d), vec3(1e-18)));
+    vec3 middle = -o / safe, reach = half_size / abs(safe);
+    vec3 enters = middle - reach, leaves = middle + reach;
+    float first = max(max(enters.x, enters.y), enters.z), last = min(min(leaves.x, leaves.y), leaves.z);
+    return first < last ? vec2(first, last) : vec2(FAR, -FAR);
+}

@@ -1,0 +1,78 @@
+{{ shading_functions }}
+const vec3 UP = {{ up }};
+
+vec3 sky(vec3 d) { return sky_radiance(d, UP, {{ sky }}); }
+
+{% if lights %}
+// Light number `light` at a point: the way to it, how far it is, and its irradiance there.
+void light_at(int light, vec3 p, out vec3 toward, out float reach, out vec3 irradiance) {
+{% for light in lights %}
+    {{ "" if loop.first else "else " }}{{ "" if loop.last else "if (light == %d) " % loop.index0 }}{
+{% for line in light.lines %}
+        {{ line }}
+{% endfor %}
+    }
+{% endfor %}
+}
+
+{% endif %}
+// How open the sky is over a point, from distances along the normal.
+float openness(vec3 p, vec3 normal) {
+{% if map %}
+    vec4 heights = {{ occlusion_heights }}, left = heights, distances = vec4(0.0);
+    int taps = 0;
+    do {
+        distances = vec4(distances.yzw, map(p + left.x * normal));
+        left = left.yzwx;
+        taps += 1;
+    } while (taps < 4);
+    return occlusion_weight(distances, heights);
+{% else %}
+    return 1.0;
+{% endif %}
+}
+
+// One loop, one call of trace: the ray of the eye first, then one to each light.
+vec4 radiance(vec2 pixel) {
+    vec3 o, d;
+    camera_ray(pixel, o, d);
+    travelled = rebase(o, d);
+    float start = -travelled, limit = FAR;
+    vec3 view = -d, p = vec3(0.0), normal = vec3(0.0), toward = vec3(0.0), irradiance = vec3(0.0), seen = vec3(0.0);
+    Surface s;
+    bool hit = false;
+    int light = -1;
+    do {
+        float t = trace(o, d, start, limit);
+        if (light < 0) {
+            hit = t < FAR;
+            p = o + t * d;
+            s = surface(hit ? p : vec3(0.0));
+{% include "shade/polish.glsl" %}
+            normal = normalize(s.field.xyz);
+            normal = dot(normal, view) > 0.0 ? normal : normalize(normal - 1.001 * dot(normal, view) * view);
+            travelled += t;
+{% if lights %}
+        } else if (t >= limit) {
+            seen += irradiance * reflect_light(normal, view, toward, {{ surface.properties.color }}, {{ surface.properties.metallic }}, {{ surface.properties.roughness }});
+{% endif %}
+        }
+        light += 1;
+{% if lights %}
+        // shadow rays start clear of the surface by more than it may be wrong (Keinert 2014, section 3.3)
+        o = p + max({{ lift }}, 4.0 * tolerance(0.0)) * normal;
+        light_at(light, o, toward, limit, irradiance);
+        d = toward;
+        start = 0.0;
+{% endif %}
+    } while (hit && light < {{ lights | length }});
+    if (!hit) {
+        return vec4(sky(-view){% for light in suns %} + sun_disc(-view, {{ light.toward }}) * {{ light.radiance }}{% endfor %}, 0.0);
+    }
+    seen += ambient(normal, view, UP, {{ surface.properties.color }}, {{ surface.properties.metallic }}, {{ surface.properties.roughness }}, openness(p, normal), {{ sky }});
+{% if transmission %}
+    vec3 clear = transmit(normal, view, UP, {{ surface.properties.ior }}, {{ surface.properties.tint }}, {{ sky }});
+    seen = mix(seen, clear, {{ surface.properties.transmission }});
+{% endif %}
+    return vec4(seen + {{ surface.properties.emission }}, 1.0);
+}

@@ -1,0 +1,108 @@
+"""Fixtures that every test may use: an OpenGL context, and field functions run on it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from sdfc.field.function import Function
+from sdfc.field.graph import Expr, Op, Type, topological
+
+if TYPE_CHECKING:
+    import moderngl
+    import numpy as np
+
+RunFunction = Callable[..., "np.ndarray[Any, Any]"]
+
+
+@pytest.fixture(scope="session")
+def gl() -> Iterator[moderngl.Context]:
+    """An OpenGL context. Without one the test is skipped, or fails if SDFC_REQUIRE_GL=1 (as in CI)."""
+    import moderngl
+
+    try:
+        context = moderngl.create_standalone_context(backend="egl")
+    except Exception as error:  # moderngl raises bare exceptions
+        if os.environ.get("SDFC_REQUIRE_GL") == "1":
+            pytest.fail(f"SDFC_REQUIRE_GL=1, but there is no OpenGL context: {error}")
+        pytest.skip(f"no OpenGL context: {error}")
+    yield context
+    context.release()
+
+
+@pytest.fixture(scope="session")
+def run_function(gl: moderngl.Context) -> RunFunction:
+    """run_function(function, inputs, params={}) prints the function as GLSL and evaluates it over arrays on the GPU.
+
+    `inputs` has (n,) for a FLOAT parameter and (k, n) for a VECk; the result likewise, float32; a BOOL gives 0 and 1.
+    """
+
+    def run(
+        function: Function, inputs: Mapping[str, Any], params: Mapping[str, Any] | None = None
+    ) -> np.ndarray[Any, Any]:
+        import numpy as np
+
+        rows = [
+            np.atleast_2d(np.asarray(inputs[name], np.float32)).reshape(type_.size, -1)
+            for name, type_ in function.parameters
+        ]
+        given = np.concatenate(rows) if rows else np.zeros((1, 1), np.float32)
+        count = given.shape[1]
+        size = function.result.type.size
+        program = gl.compute_shader(_compute_shader(function, count))
+        _set_uniforms(program, function.result, params or {})
+        source = gl.buffer(np.ascontiguousarray(given).tobytes())
+        target = gl.buffer(reserve=4 * size * count)
+        source.bind_to_storage_buffer(0)
+        target.bind_to_storage_buffer(1)
+        program.run((count + 63) // 64)
+        gl.finish()
+        result = np.frombuffer(target.read(), np.float32).reshape(size, count)
+        for resource in (source, target, program):
+            resource.release()
+        return result if size > 1 else result[0]
+
+    return run
+
+
+def _compute_shader(function: Function, count: int) -> str:
+    """A shader whose thread i calls the function with column i of the rows in `given`."""
+    from sdfc.glsl.expression import print_function, type_name
+    from sdfc.glsl.names import identifier
+
+    params = {str(n.value): n.type for n in topological([function.result]) if n.op is Op.PARAM}
+    uniforms = "".join(f"uniform {type_name(t)} {identifier(name)};\n" for name, t in sorted(params.items()))
+    arguments = []
+    row = 0
+    for _, type_ in function.parameters:
+        columns = [f"given[{row + i}u * {count}u + i]" for i in range(type_.size)]
+        arguments.append(f"{type_name(type_)}({', '.join(columns)})")
+        row += type_.size
+    result = function.result.type
+    components = [""] if result.size == 1 else [f".{letter}" for letter in "xyzw"[: result.size]]
+    stores = "".join(f"    made[{n}u * {count}u + i] = float(r{c});\n" for n, c in enumerate(components))
+    return f"""#version 430
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer Given {{ float given[]; }};
+layout(std430, binding = 1) writeonly buffer Made {{ float made[]; }};
+{uniforms}
+{print_function(function)}
+void main() {{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= {count}u) return;
+    {type_name(result)} r = {identifier(function.name)}({", ".join(arguments)});
+{stores}}}
+"""
+
+
+def _set_uniforms(program: Any, root: Expr, params: Mapping[str, Any]) -> None:
+    from sdfc.glsl.names import identifier
+
+    for node in topological([root]):
+        name = identifier(str(node.value))
+        if node.op is Op.PARAM and name in program:  # the compiler may have dropped it
+            value = params[str(node.value)]
+            program[name].value = bool(value) if node.type is Type.BOOL else value
