@@ -185,6 +185,7 @@ def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:  # no
                 prover.slopes(needed=TRACERS[options.tracer].needs_map),
                 frame.radius,
                 frame.centre,
+                frame.is_finite,
             )
     except RecursionError as error:
         raise InternalError("the scene is nested too deeply to compile") from error

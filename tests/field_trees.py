@@ -72,13 +72,13 @@ PARAM_VALUES = {"alpha": 0.75, "beta": (0.5, -1.25, 0.25)}
 
 
 @st.composite
-def trees(draw: st.DrawFn, type_: Type = Type.FLOAT, steps: int = 24, smooth: bool = False) -> Recipe:
+def trees(draw: st.DrawFn, type_: Type = Type.FLOAT, steps: int = 30, smooth: bool = False) -> Recipe:
     """An expression of a type whose values are finite at `points`: the last of some steps, each made of earlier ones.
 
     A smooth one has no kinks and no steps near the points. Hypothesis chooses (and shrinks) the number of steps and a
     seed; left to itself it draws mostly tiny expressions.
     """
-    count = draw(st.integers(2, steps))
+    count = draw(st.integers(1, steps))
     return _Growth(Random(draw(st.integers(0, 2**32))), smooth).grow(type_, count)
 
 
@@ -88,13 +88,19 @@ class _Growth:
     def __init__(self, random: Random, smooth: bool) -> None:
         self._random = random
         self._smooth = smooth
+        self._unary = SMOOTH_UNARY if smooth else tuple(sorted(UNARY, key=lambda op: op.value))
+        self._binary = SMOOTH_BINARY if smooth else tuple(sorted(BINARY, key=lambda op: op.value))
         self._pool = {t: _leaves(t) for t in Type}
 
     def grow(self, type_: Type, count: int) -> Recipe:
         kinds = [Type.FLOAT, *VECTORS] if self._smooth else [Type.BOOL, Type.FLOAT, Type.FLOAT, *VECTORS]
         for kind in self._random.choices(kinds, k=count):
             self._pool[kind].append(self._step(kind))
-        return self._step(type_)
+        result = self._step(type_)
+        while type_ is not Type.BOOL and count > 0:  # what was grown is drawn together
+            count -= 3
+            result = protected(self._random.choice(self._binary), result, self._operand(type_))
+        return result
 
     def _pick(self, type_: Type) -> Recipe:
         chance = self._random.random()
@@ -115,14 +121,14 @@ class _Growth:
     def _step(self, type_: Type) -> Recipe:
         if type_ is Type.BOOL:
             return self._condition()
-        kind = self._random.choice("uubbbpp" if self._smooth else "uubbbpps")
+        kind = self._random.choice("uubbppp" if self._smooth else "uubbppps")
         match kind:
             case "u":
-                return protected(self._random.choice(SMOOTH_UNARY if self._smooth else _UNARY), self._pick(type_))
+                return protected(self._random.choice(self._unary), self._pick(type_))
             case "b":
                 pair = [self._pick(type_), self._operand(type_)]
                 self._random.shuffle(pair)
-                return protected(self._random.choice(SMOOTH_BINARY if self._smooth else _BINARY), *pair)
+                return protected(self._random.choice(self._binary), *pair)
             case "s":
                 return node(Op.SELECT, self._pick(Type.BOOL), self._pick(type_), self._operand(type_))
             case _:
@@ -149,8 +155,6 @@ class _Growth:
 
 
 _NUMBERS = st.one_of(st.sampled_from([0.0, 1.0, -1.0, 2.0, 0.5]), st.integers(-40, 40).map(lambda n: n / 16.0))
-_UNARY = tuple(sorted(UNARY, key=lambda op: op.value))
-_BINARY = tuple(sorted(BINARY, key=lambda op: op.value))
 _CONDITIONS = tuple(sorted(COMPARISON | LOGIC, key=lambda op: op.value))
 
 

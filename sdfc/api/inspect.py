@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from types import ModuleType
 from typing import TYPE_CHECKING
 
-from sdfc.api.program import Program
-from sdfc.api.request import checked_names
+from sdfc.api.program import Program, load
+from sdfc.api.request import RequestError, checked_names
+from sdfc.api.source import Input
 
 if TYPE_CHECKING:
     from sdfc.syntax.tree import FieldDeclaration
@@ -39,8 +42,28 @@ def listing(kind: str) -> list[tuple[str, str]]:
     from sdfc.scene.library import declaration, standard_names
 
     fields = [declaration(name) for name in standard_names()]
-    wanted = kind == "operations"
-    return [(_usage(field), field.doc) for field in fields if _is_operation(field) is wanted]
+    if kind == "primitives":
+        return [(_usage(field), field.doc) for field in fields if not _is_operation(field)]
+    return [*_built_in(), *((_usage(field), field.doc) for field in fields if _is_operation(field))]
+
+
+def _built_in() -> list[tuple[str, str]]:
+    """The operations that are the language's own: combinations, affine maps, paint."""
+    from sdfc.scene.combine import OPERATIONS
+    from sdfc.scene.transforms import TRANSFORMS
+
+    combinations = [
+        (
+            f"{name} {{ … }}, {name}(…, blend: length)",
+            f"A sharp {name}; smooth with `blend:`, bevelled with `chamfer:`.",
+        )
+        for name in OPERATIONS
+    ]
+    maps = [
+        (f"solid.{name}({', '.join(parameters)})", "An affine map; of a profile too.")
+        for name, (parameters, _) in TRANSFORMS.items()
+    ]
+    return [*combinations, *maps, ("solid.material(m)", "Gives the material to every part that has none yet.")]
 
 
 def _is_operation(field: FieldDeclaration) -> bool:
@@ -96,7 +119,7 @@ def _plan(given: Input, _: str | None) -> str:
 
 
 def _glsl(given: Input, _: str | None) -> str:
-    return load(given).glsl()
+    return load(given).glsl().removesuffix("\n")
 
 
 def _pipeline() -> ModuleType:

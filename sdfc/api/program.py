@@ -157,7 +157,7 @@ def _accumulated(renderer: Renderer, shot: Shot, samples: int, progress: Progres
     total = np.zeros((shot.size[1], shot.size[0], 3))
     for sample in range(samples):
         part = _part(progress, sample, samples)
-        total += renderer.radiance(shot, sample, samples, part)[..., :3]
+        total += renderer.radiance(shot, sample, part)[..., :3]
     if not np.isfinite(total).any():
         raise DeviceError(f"{renderer.name} drew nothing but NaN")
     return (total / samples).astype(np.float32)

@@ -37,7 +37,7 @@ class Renderer(Protocol):
     def name(self) -> str:
         """What draws, as it calls itself."""
 
-    def radiance(self, shot: Shot, sample: int, samples: int, progress: Progress | None) -> Buffer:
+    def radiance(self, shot: Shot, sample: int, progress: Progress | None) -> Buffer:
         """Linear radiance and, in the last channel, whether something was hit (0 or 1), for one sample of a pixel."""
 
     def probe(self, shot: Shot, progress: Progress | None) -> list[Buffer]:
@@ -61,17 +61,15 @@ class GlRenderer:
         """What draws, as the driver calls it."""
         return self.device.renderer
 
-    def radiance(self, shot: Shot, sample: int, samples: int, progress: Progress | None) -> Buffer:
+    def radiance(self, shot: Shot, sample: int, progress: Progress | None) -> Buffer:
         """See Renderer."""
-        return self._draw(shot, "radiance", 1, sample, samples, progress)[0]
+        return self._draw(shot, "radiance", 1, sample, progress)[0]
 
     def probe(self, shot: Shot, progress: Progress | None) -> list[Buffer]:
         """See Renderer."""
-        return self._draw(shot, "probe", 4, 0, 1, progress)
+        return self._draw(shot, "probe", 4, 0, progress)
 
-    def _draw(
-        self, shot: Shot, entry: str, attachments: int, sample: int, samples: int, progress: Progress | None
-    ) -> list[Buffer]:
+    def _draw(self, shot: Shot, entry: str, attachments: int, sample: int, progress: Progress | None) -> list[Buffer]:
         from sdfc.gpu.frame import Frame
 
         program = self._program(shot.compiled.glsl(entry, "fragment"))

@@ -11,7 +11,7 @@ _LONGEST = 120  # characters of an expression in a line
 
 
 def show(roots: Iterable[Expr]) -> str:
-    """Every node below the roots once, arguments first: `%7 float = add(%3, %6)`. Constants and inputs stand in place."""
+    """Every node below the roots once, arguments first: `%7 float = min(%3, 0)`. Leaves stand in place."""
     wanted = tuple(roots)
     lines = []
     for node in topological(wanted):

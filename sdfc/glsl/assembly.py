@@ -18,7 +18,7 @@ from sdfc.glsl.live import Live
 from sdfc.glsl.names import identifier
 from sdfc.glsl.proven import ProvenWriter, TraceText
 from sdfc.glsl.surface import SurfaceWriter
-from sdfc.plan.plan import CUT, FINE, GROW, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, Plan
+from sdfc.plan.plan import CUT, GROW, HORIZON, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, Plan
 from sdfc.plan.steps import Blend, leaves_of
 from sdfc.plan.setting import Setting
 from sdfc.scene.model import Param
@@ -88,7 +88,10 @@ class _Assembly:
             "grow": literal(GROW),
             "cut": literal(CUT),
             "smallest": literal(SMALLEST_TOLERANCE),
-            "fine": literal(FINE),
+            "fine": literal(tracer.tolerance),
+            "finite": plan.is_finite,
+            "horizon": literal(HORIZON),
+            "lift": literal(LIFT),
             "most_steps": self._most_steps(),
             "needs_marching": trace.march or tracer.needs_map,
             "needs_map_library": has_map and "box_distance" in map_text,
@@ -120,7 +123,6 @@ class _Assembly:
             "lights": lights,
             "suns": suns,
             "occlusion_heights": f"vec4({', '.join(map(literal, OCCLUSION_HEIGHTS))})",
-            "lift": literal(LIFT),
             "transmission": transmission,
         }
 

@@ -144,8 +144,8 @@ def _visible_position(position: Array) -> Array:
     """8 bits: the box of all hits, each axis to 0 .. 255; a miss is black."""
     import numpy as np
 
-    hit: Array = np.isfinite(position).all(axis=-1)
-    if not hit.any():
+    hit = np.asarray(np.isfinite(position).all(axis=-1))
+    if not np.any(hit):
         return np.zeros(position.shape, np.uint8)
     low, high = position[hit].min(axis=0), position[hit].max(axis=0)
     share = (position - low) / np.maximum(high - low, np.finfo(np.float32).tiny)

@@ -23,6 +23,12 @@ class Generator:
     radius: float = 0.0
     axis: Point | None = None
 
+    def reach(self, axis: int) -> float:
+        """How far it goes along a coordinate axis, to each side."""
+        if self.axis is None:
+            return self.radius
+        return self.radius * math.sqrt(max(1.0 - self.axis[axis] ** 2, 0.0))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Spanned:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from sdfc.diagnostics import SceneError, Span, scene_error
 from sdfc.openscad.context import Context
 from sdfc.openscad.part import Flat, Part, Solid
+from sdfc.openscad.plane import Plane
 from sdfc.openscad.syntax import Argument, Call, Value
 
 FACETS_THAT_COUNT = 50  # an explicit $fn below this means the polygon; from here on it stands for the curve
@@ -108,12 +109,20 @@ class Invocation:
             return None
         return max(3, int(count))
 
-    def solids(self) -> list[Solid]:
-        """The children in space, without nothings. Raises SceneError for one in the plane."""
-        made = [child for child in self.children if isinstance(child, Solid)]
-        if any(isinstance(child, Flat) for child in self.children):
-            raise scene_error(f"`{self.call.name}` works in space, and this child is in the plane", self.span)
-        return made
+    def parts(self) -> list[Part]:
+        """The children, without nothings, and all in the plane or all in space: as the first of them is."""
+        made = [child for child in self.children if child is not None]
+        kept = [child for child in made if type(child) is type(made[0])]
+        if len(kept) < len(made):
+            other = "in space" if isinstance(made[0], Flat) else "in the plane"
+            self.context.warn(f"`{self.call.name}` mixes 2D and 3D: what is {other} is left out", self.span)
+        return kept
+
+    def flats(self) -> list[Plane]:
+        """The children in the plane. Solids are left out, with a warning."""
+        if any(isinstance(child, Solid) for child in self.children):
+            self.context.warn(f"`{self.call.name}` is of shapes in the plane: solids are left out", self.span)
+        return [child.plane for child in self.children if isinstance(child, Flat)]
 
 
 def _vector(row: Value) -> tuple[float, ...]:

@@ -283,3 +283,31 @@ def extent(root: Plane) -> tuple[Point2, Point2] | None:
                 assert_never(node)
 
     return fold(root, box)
+
+
+def is_tight(root: Plane) -> bool:
+    """Whether `extent` is the smallest box."""
+    return fold(root, lambda node, _, parts: all(parts) and not isinstance(node, Common | Outside))
+
+
+def spanning_discs(root: Plane) -> list[tuple[Point2, float]]:
+    """Points (radius 0) and discs whose convex hull is that of the shape. Raises Refusal where that is not known."""
+
+    def discs(node: Plane, _: int, parts: list[list[tuple[Point2, float]]]) -> list[tuple[Point2, float]]:
+        match node:
+            case Polygon():
+                return [(p, 0.0) for p in node.points]
+            case Disc():
+                if node.radius is None:
+                    raise Refusal("the hull of an ellipse has no exact form")
+                return [(node.center, node.radius)]
+            case Stroke():
+                return [(p, node.radius) for p in node.points]
+            case Joined():
+                return [d for part in parts for d in part]
+            case Common() | Outside():
+                raise Refusal("the hull of a difference or an intersection has no exact form")
+            case _:
+                assert_never(node)
+
+    return fold(root, discs)

@@ -12,8 +12,8 @@ from sdfc.tracers.record import Tracer
 GROW = 2.0**-22
 CUT = 2.0**-20
 SMALLEST_TOLERANCE = 2.0**-20  # eight roundings
-FINE = 1.0 / 64.0  # of a pixel's half
 LIFT = 2.0**-17  # how far shadow rays start above the surface: clear of CUT and of rounding
+HORIZON = 1e5  # how far rays are marched in a scene without end
 MOST_LOOPS = 60000  # llvmpipe stops all loops of an invocation together at 65 535 (GL.md 0)
 
 
@@ -27,6 +27,7 @@ class Plan:
     slopes: dict[int, float]  # the Lipschitz constant of each part's formula, by id of the part
     radius: float
     centre: tuple[float, float, float]
+    is_finite: bool  # the whole scene lies in the unit ball of its own coordinates
 
     @property
     def events(self) -> int:

@@ -8,15 +8,13 @@ from sdfc.diagnostics import Diagnostic, SceneError, Span, scene_error
 from sdfc.field.graph import Expr, Type
 from sdfc.scene import values
 from sdfc.scene.arguments import Given, check, convert, gather, match
-from sdfc.scene.define import type_of
+from sdfc.scene.define import IN_PLANE
 from sdfc.scene.names import Module, Names, Problems, evaluate
 from sdfc.scene.ranges import samples
 from sdfc.scene.values import Value, is_shape
 from sdfc.shape.definition import Argument, Definition, Kind
 from sdfc.shape.graph import Shape
 from sdfc.syntax import tree
-
-IN_PLANE = "_in_plane"  # of an operation on solids: the same formula for shapes in the plane
 
 
 def find(name: str, names: Names) -> Definition | None:
@@ -128,7 +126,10 @@ def _try(definition: Definition, arguments: Sequence[Argument], names: Names) ->
 
 
 def expand(
-    declared: tuple[tree.FunctionDeclaration, Module], call: tree.Call | tree.Method, given: Sequence[Given], names: Names
+    declared: tuple[tree.FunctionDeclaration, Module],
+    call: tree.Call | tree.Method,
+    given: Sequence[Given],
+    names: Names,
 ) -> Value:
     """The body of a `def` with what it is given."""
     declaration, module = declared
@@ -149,6 +150,3 @@ def expand(
         if parameter.default is not None and parameter.name.text not in inner.values:
             inner.values[parameter.name.text] = evaluate(parameter.default, inner)
     return evaluate(declaration.body, inner)
-
-
-__all__ = ["apply", "expand", "find", "for_children", "type_of"]

@@ -15,7 +15,7 @@ from sdfc.scene.limits import LONGEST_LIST
 from sdfc.scene.model import Param
 from sdfc.scene.names import Names, Problems, did_you_mean, evaluate
 from sdfc.scene.ranges import samples
-from sdfc.scene.values import Unit, Value, words
+from sdfc.scene.values import Value
 from sdfc.shape.definition import Argument, Kind, Parameter
 from sdfc.syntax import tree
 
@@ -149,7 +149,7 @@ def convert(parameter: Parameter, given: Given) -> Argument:
 
 
 def check(parameter: Parameter, argument: Argument, span: Span, params: Mapping[str, Param]) -> None:
-    """Raises SceneError where the value is not finite or outside of the parameter's limits, for any value of a param."""
+    """Raises SceneError where the value is not finite or outside of the limits, for any value of a param."""
     for expr in argument if isinstance(argument, tuple) else (argument,):
         if parameter.kind is Kind.BOOLEAN:
             continue
@@ -180,6 +180,3 @@ def check_finite(what: str, expr: Expr, span: Span, params: Mapping[str, Param])
     for value, where in samples(expr, params):
         if not all(map(math.isfinite, value.numbers)):
             raise scene_error(f"{what} must be finite{where}", span)
-
-
-__all__ = ["Given", "Unit", "check", "check_finite", "convert", "gather", "match", "words"]

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
 from sdfc.diagnostics import Span, scene_error
 from sdfc.field.graph import Expr, Type
 from sdfc.scene import functions, values
-from sdfc.scene.limits import LONGEST_LOOP
-from sdfc.scene.names import Names, Rule, evaluate
 from sdfc.scene.color import hexadecimal
+from sdfc.scene.limits import LONGEST_LOOP
+from sdfc.scene.names import Names, Rule, did_you_mean, evaluate
 from sdfc.scene.units import UNITS, unknown_unit
 from sdfc.scene.values import ListValue, Quantity, RangeValue, Unit, Value, words
 from sdfc.syntax import tree
@@ -65,7 +65,8 @@ def rounds(value: Value, span: Span) -> tuple[Value, ...]:
     """What a loop's variable becomes, one after the other. The end of a range is not among it."""
     if not isinstance(value, RangeValue):
         return values.items(value, span)
-    low, high = (values.constant(values.number(end, span), "the end of a loop", span) for end in (value.low, value.high))
+    ends = [values.constant(values.number(end, span), "the end of a loop", span) for end in (value.low, value.high)]
+    low, high = ends
     start, stop = low.number, high.number
     if not stop - start <= LONGEST_LOOP:
         raise scene_error(f"a loop of {stop - start:g} rounds; {LONGEST_LOOP} are allowed", span)
@@ -103,8 +104,9 @@ def _unit_of(operator: str, a: Quantity, b: Quantity, place: Span) -> Unit:
     if operator in "+-":
         if len(units) == 1:
             return Unit.ANGLE
-        bare = next((q.expr for q in (a, b) if q.unit is Unit.NUMBER and q.expr.is_constant and q.expr.type is Type.FLOAT), None)
-        hint = f"write {bare.number:g}deg" if bare is not None else "an angle has a unit, as in 30deg"
+        bare = a.expr if a.unit is Unit.NUMBER else b.expr
+        known = bare.is_constant and bare.type is Type.FLOAT
+        hint = f"write {bare.number:g}deg" if known else "an angle has a unit, as in 30deg"
         raise scene_error(f"'{operator}' cannot mix {words(a)} and {words(b)}", place, hint)
     if Unit.COLOR not in units and not (operator == "*" and len(units) == 1):
         if operator == "/" and b.unit is Unit.ANGLE:
@@ -208,8 +210,6 @@ def cell(row: values.Row, link: tree.Member, names: Names) -> Value:
     column = link.name.text
     text = row.cells.get(column)
     if text is None:
-        from sdfc.scene.names import did_you_mean
-
         hint = did_you_mean(column, list(row.cells)) or "the columns are " + ", ".join(row.cells)
         raise scene_error(f"the table {row.source.name} has no column '{column}'", link.span, hint)
     number = text.strip()
@@ -245,5 +245,3 @@ RULES: Mapping[type[Any], Rule] = MappingProxyType(
         tree.Range: _range,
     }
 )
-
-__all__ = ["RULES", "Callable", "calculate", "elements", "function", "index", "is_function", "logic", "member", "rounds", "sign"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
@@ -43,7 +42,7 @@ def _operation(node: tree.Operation, names: Names) -> Value:
     for operand in node.rest:
         names.context.budget.step(operand.operator_span)
         rest.append((operand.operator, operand.operator_span, evaluate(operand.value, names), operand.value.span))
-    if is_shape(first) or any([is_shape(value) for _, _, value, _ in rest]) or node.rest[0].operator in "|&":
+    if is_shape(first) or any(is_shape(value) for _, _, value, _ in rest) or node.rest[0].operator in "|&":
         return combine.operator(node, first, rest, names)
     result = values.quantity(first, node.first.span)
     for symbol, place, value, span in rest:
@@ -140,8 +139,6 @@ def _instances(node: tree.Call, names: Names) -> Value:
 _SPECIAL: Mapping[str, Callable[[tree.Call, Names], Value]] = MappingProxyType(
     {**dict.fromkeys(combine.OPERATIONS, combine.call), "checker": _checker, "instances": _instances}
 )
-RESERVED = (*_SPECIAL, *functions.FUNCTIONS, *functions.FOLDS, *functions.CONSTANTS)
-RESERVED_VALUES = ("count", "true", "false", "nothing", "row")
 
 # --- chains
 
@@ -226,5 +223,9 @@ RULES: Mapping[type, Rule] = MappingProxyType(
         tree.Chain: _chain,
     }
 )
-BUILT_IN = frozenset({*RESERVED, *RESERVED_VALUES})
-__all__ = ["BUILT_IN", "RULES", "dataclasses"]
+
+# what no declaration can take away
+BUILT_IN = frozenset(
+    {*_SPECIAL, *_CHAINED, *functions.FUNCTIONS, *functions.FOLDS, *functions.CONSTANTS}
+    | {"count", "true", "false", "nothing", "row"}
+) - {"round"}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sdfc.diagnostics import SceneError, Span, scene_error
-from sdfc.field.graph import Expr
 from sdfc.scene import values
 from sdfc.scene.apply import for_children
 from sdfc.scene.arguments import Given, check, convert, gather, match
@@ -88,9 +87,7 @@ def union(shapes: Sequence[Shape], names: Names, span: Span, dimension: int = 3)
 _Style = tuple[str, Given]  # how two shapes are joined ('smooth', 'smooth…cubic', 'chamfer') and the width
 
 
-def _style(
-    node: tree.Call, options: dict[str, Given], kernel: tree.Argument | None, names: Names
-) -> _Style | None:
+def _style(node: tree.Call, options: dict[str, Given], kernel: tree.Argument | None, names: Names) -> _Style | None:
     blend, chamfer = options.get("blend"), options.get("chamfer")
     if blend is not None and chamfer is not None:
         raise scene_error("a blend and a chamfer exclude each other", chamfer.span)
@@ -156,6 +153,3 @@ def complement(value: Value, names: Names, operand: Span, span: Span) -> Shape:
     """`~a`."""
     names.context.budget.shape(span)
     return names.context.shapes.complement(values.shape(value, operand), span)
-
-
-__all__ = ["OPERATIONS", "Expr", "block", "call", "complement", "flat_shapes", "operator", "union"]

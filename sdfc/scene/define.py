@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sdfc.diagnostics import Diagnostic, SceneError, Span, scene_error
 from sdfc.field.graph import Expr, FieldGraph, Type
@@ -38,6 +38,7 @@ from sdfc.syntax import tree
 from sdfc.syntax.walk import mentions
 
 _RESERVED = {"p": "the point", "level": "a level", "o": "a ray's origin", "d": "a ray's direction", "grow": "a ray's"}
+IN_PLANE = "_in_plane"  # behind the name of an operation on solids: its twin for shapes in the plane
 _ONCE = ("exact", "bound", "convex", "homogeneous", "lipschitz", "bounds", "gauge", "ray", "lowering", "dual")
 
 
@@ -62,6 +63,19 @@ def define(
         is_standard=is_standard,
         requirements=tuple([maker.requirement(c) for c in declaration.claims if c.word == "requires"]),
     )
+
+
+def in_plane(declaration: tree.FieldDeclaration) -> tree.FieldDeclaration:
+    """The same operation for shapes in the plane: its formula says the same of them, or cannot be evaluated."""
+    parameters = tuple(
+        [
+            replace(p, kind=tree.Identifier(p.kind.span, "profile")) if p.kind.text == "solid" else p
+            for p in declaration.parameters
+        ]
+    )
+    name = tree.Identifier(declaration.name.span, declaration.name.text + IN_PLANE)
+    place = tree.Identifier(declaration.name.span, "plane")
+    return replace(declaration, name=name, parameters=parameters, place=place)
 
 
 def _dimension(place: tree.Identifier | None) -> int:
@@ -293,8 +307,14 @@ def _claims(declaration: tree.FieldDeclaration, maker: _Maker, is_standard: bool
         gauge=maker.gauge(found["gauge"]) if "gauge" in found else None,
         ray=maker.ray(found["ray"]) if "ray" in found else None,
         lowering=maker.lowering(found["lowering"]) if "lowering" in found else None,
-        dual=found["dual"].detail if "dual" in found else None,
+        dual=_dual(found.get("dual"), declaration),
     )
+
+
+def _dual(claim: tree.Claim | None, declaration: tree.FieldDeclaration) -> str | None:
+    if claim is None:
+        return None
+    return claim.detail + (IN_PLANE if declaration.name.text.endswith(IN_PLANE) else "")
 
 
 def _exactness(found: Mapping[str, tree.Claim]) -> Exactness:
@@ -306,7 +326,7 @@ def _exactness(found: Mapping[str, tree.Claim]) -> Exactness:
 def _lipschitz(
     found: Mapping[str, tree.Claim], maker: _Maker, is_standard: bool
 ) -> Callable[[Environment, Mapping[str, ChildFacts]], Expr] | None:
-    """As claimed; else 1 for a distance (or a bound of it), and the children's greatest for an operation that says it keeps one."""
+    """As claimed; else 1 for what is a distance or a bound of it, and for an operation its children's greatest."""
     if "lipschitz" in found:
         return maker.lipschitz(found["lipschitz"])
     is_operation = any(kind.is_child for kind in maker.kinds.values())

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias, cast
 
-from sdfc.diagnostics import InternalError, SceneError, Span, scene_error
+from sdfc.diagnostics import InternalError, Span, scene_error
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.scene import functions
 from sdfc.scene.units import UNITS, unknown_unit
@@ -27,6 +27,8 @@ class Child:
 
 
 Value: TypeAlias = "Expr | tuple[Value, ...] | Child"
+
+
 class Outer(Protocol):
     """What a formula sees outside of its field."""
 
@@ -198,7 +200,7 @@ def _name(node: tree.Name, scope: Scope) -> Value:
 
 def _list(node: tree.ListLiteral, scope: Scope) -> Value:
     values = _elements(node.elements, scope)
-    if 2 <= len(values) <= 4 and all([isinstance(v, Expr) and v.type is Type.FLOAT for v in values]):
+    if 2 <= len(values) <= 4 and all(isinstance(v, Expr) and v.type is Type.FLOAT for v in values):
         return scope.graph.vector(*cast("list[Expr]", values))
     return tuple(values)
 
@@ -400,5 +402,3 @@ _LINKS: dict[type, Callable[[Value, Any, Scope], Value]] = {
     tree.Method: _method,
     tree.Index: _index,
 }
-
-__all__ = ["Child", "SceneError", "Scope", "Value", "boolean", "did_you_mean", "evaluate", "expression", "items", "scalar"]

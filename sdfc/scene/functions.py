@@ -163,9 +163,7 @@ def _cross(graph: FieldGraph, a: Expr, b: Expr) -> Expr:
 
 
 def _nonzero(graph: FieldGraph, x: Expr) -> Expr:
-    return graph.select(
-        graph.abs(x) < _NEAREST_ZERO, graph.select(x < 0.0, -_NEAREST_ZERO, _NEAREST_ZERO), x
-    )
+    return graph.select(graph.abs(x) < _NEAREST_ZERO, graph.select(x < 0.0, -_NEAREST_ZERO, _NEAREST_ZERO), x)
 
 
 def _length(graph: FieldGraph, args: Sequence[Expr], span: Span) -> Expr:

@@ -12,8 +12,9 @@ from typing import cast
 
 from sdfc.diagnostics import InternalError, Source, Span
 from sdfc.field.graph import Expr, FieldGraph
-from sdfc.scene.define import define
-from sdfc.scene.formula import Helper
+from sdfc.scene.check import try_out
+from sdfc.scene.define import IN_PLANE, define, in_plane
+from sdfc.scene.formula import Helper, Outer
 from sdfc.shape.definition import Definition
 from sdfc.syntax import tree
 
@@ -45,13 +46,19 @@ class Library:
         self._definitions: dict[str, Definition] = {}
 
     def definition(self, name: str) -> Definition | None:
-        """The standard field of that name."""
+        """The standard field of that name; with IN_PLANE behind it, an operation's twin for shapes in the plane."""
         made = self._definitions.get(name)
-        place = _contents().fields.get(name)
+        place = _contents().fields.get(name.removesuffix(IN_PLANE))
         if made is None and place is not None:
-            outer = _File(place.source.name)
-            made = self._definitions[name] = define(declaration(name), self._values, outer, is_standard=True)
+            made = self._definitions[name] = self._made(name, _File(place.source.name))
         return made
+
+    def _made(self, name: str, outer: Outer) -> Definition:
+        if not name.endswith(IN_PLANE):
+            return define(declaration(name), self._values, outer, is_standard=True)
+        twin = define(in_plane(declaration(name.removesuffix(IN_PLANE))), self._values, outer, is_standard=True)
+        try_out(twin, self._values)
+        return twin
 
 
 @dataclass(frozen=True, slots=True)

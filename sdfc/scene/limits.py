@@ -1,4 +1,4 @@
-"""How much a scene may ask of the compiler: each limit has its own error, so that no input hangs or fills the memory."""
+"""How much a scene may ask of the compiler: each limit has its own error, and no input hangs."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from sdfc.shape.graph import Shape, ShapeGraph
 
 @dataclass(frozen=True, slots=True)
 class Param:
-    """A live value: a uniform of the shader. `unit` is 'number', 'length', 'angle' or 'color' (for controls and `--set`)."""
+    """A live value: a uniform of the shader. `unit` is 'number', 'angle' or 'color' (for controls and `--set`)."""
 
     name: str
     type: Type
@@ -24,7 +24,7 @@ class Param:
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """Where the picture is taken from. `fov` is the vertical angle (radians); `height`, if set, makes it orthographic."""
+    """Where the picture is taken from. `fov` is the vertical angle (radians); a `height` makes it orthographic."""
 
     eye: Expr
     target: Expr

@@ -89,7 +89,17 @@ _SKY = MappingProxyType(
 def material(name: str, given: Sequence[Given], names: Names, span: Span) -> Material:
     """A material from its properties; what is not said has its default."""
     read = _read("a material", _MATERIAL, given, names, span)
-    return Material(name, *[read[key] for key in _MATERIAL], span=span)
+    return Material(
+        name=name,
+        color=read["color"],
+        metallic=read["metallic"],
+        roughness=read["roughness"],
+        emission=read["emission"],
+        transmission=read["transmission"],
+        ior=read["ior"],
+        tint=read["tint"],
+        span=span,
+    )
 
 
 def properties(entries: Sequence[tree.Property], names: Names) -> list[Given]:

@@ -122,7 +122,8 @@ def _about_axis(given: _Arguments, dimension: int, graph: FieldGraph, names: Nam
     angle = values.angle(given["angle"].value, given["angle"].span)
     if "axis" not in given:
         if dimension == 3:
-            raise scene_error("about which axis?", given["angle"].span, "write rotate(y: …), or rotate(angle, axis: […])")
+            hint = "write rotate(y: …), or rotate(angle, axis: […])"
+            raise scene_error("about which axis?", given["angle"].span, hint)
         return _snapped(matrix.rotation(graph, 2, angle))
     if dimension == 2:
         raise scene_error("a shape in the plane turns about z only", given["axis"].span, "write rotate(30deg)")

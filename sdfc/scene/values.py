@@ -112,7 +112,7 @@ def shape(value: Value, span: Span, dimension: int | None = None) -> Shape:
         )
     if dimension == 2 and value.dimension == 3:
         raise scene_error(
-            "expected a shape in the plane, not one in space", span, "cut it first: .slice(…) gives a shape in the plane"
+            "expected a shape in the plane, not one in space", span, "cut it first: .slice() gives a shape in the plane"
         )
     return value
 

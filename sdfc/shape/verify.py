@@ -1,4 +1,4 @@
-"""What holds for every shape graph, whoever made it: asked after elaboration and after every pass, by tests and `check`."""
+"""What holds for every shape graph, whoever made it: asked after elaboration, and by tests after every pass."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _CHILD_DIMENSIONS = {Kind.SOLID: 3, Kind.PROFILE: 2}
 
 
 def verify(root: Shape, dimension: int = 3) -> None:
-    """Raise InternalError with every broken rule: dimensions, arguments' types, values of constants and params alone."""
+    """Raise InternalError with every broken rule: dimensions, arguments' types, values that are constants or params."""
     broken = [f"{node.span}: {fault}" for node in shapes_below(root) for fault in _faults(node)]
     if root.dimension != dimension:
         broken.append(f"{root.span}: the root has {root.dimension} dimensions, not {dimension}")

@@ -244,4 +244,3 @@ class Builder:
 
 def _bindings(where: tree.Where | None) -> tuple[tree.Binding, ...]:
     return where.bindings if where is not None else ()
-

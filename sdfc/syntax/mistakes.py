@@ -154,7 +154,7 @@ def _unbalanced(source: Source, start: int, stop: int, place: _Place) -> Diagnos
             return Diagnostic("this comment is never closed", Span(source, at, at + 2), "end it with '*/'")
     if place.found in _CLOSING:
         if not stack:
-            return Diagnostic(f"'{place.found}' closes nothing", place.span, "is one too many, or an opening one missing?")
+            return Diagnostic(f"'{place.found}' closes nothing", place.span, "is it one too many?")
         bracket, at = stack[-1]
         if _OPENING[bracket] != place.found:
             line, _ = source.position(at)

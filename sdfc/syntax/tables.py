@@ -19,7 +19,7 @@ def load(grammar: str, callbacks: object) -> Lark:
     kept = _kept(path, callbacks)
     if kept is not None:
         return kept
-    made = Lark(grammar, parser="lalr", transformer=callbacks)  # type: ignore[arg-type]
+    made = Lark(grammar, parser="lalr", transformer=callbacks)
     _keep(made, path)
     return made
 
@@ -49,7 +49,7 @@ def _kept(path: Path | None, callbacks: object) -> Lark | None:
 
 
 def _keep(parser: Lark, path: Path | None) -> None:
-    """Written aside, then renamed: another process never sees half a file. A folder that cannot be written is no error."""
+    """Written aside, then renamed: another process never sees half a file. Where nothing can be written, nothing is."""
     if path is None:
         return
     with contextlib.suppress(OSError):

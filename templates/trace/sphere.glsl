@@ -1,7 +1,8 @@
 // requires: map (generated), tolerance
-// provides: trace, by sphere tracing (Hart 1996)
+// provides: trace, by sphere tracing as published (Hart 1996): no bounding volume, but a far plane that is proven
 float trace(vec3 o, vec3 d, float start, float limit) {
     float t = start, r, eps;
+    float end = min(limit, {{ "1.0001 - dot(o, d)" if finite else horizon }});  // nothing of the scene lies beyond
     int count = 0;
     do {
         r = map(o + t * d);
@@ -9,6 +10,6 @@ float trace(vec3 o, vec3 d, float start, float limit) {
         t += r > eps ? r : 0.0;
         steps += 1.0;
         count += 1;
-    } while (r > eps && t < limit && count < MOST_STEPS);
-    return t < limit ? t : FAR;
+    } while (r > eps && t < end && count < MOST_STEPS);
+    return t < end ? t : FAR;
 }

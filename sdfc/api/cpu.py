@@ -1,0 +1,29 @@
+"""Rendering with NumPy, in float64: for machines without OpenGL, and as the other opinion."""
+
+from __future__ import annotations
+
+from sdfc.api.renderer import Buffer, Progress, Shot, jitter
+
+
+class CpuRenderer:
+    """Draws with sdfc.reference: much slower than OpenGL, the same picture within rounding."""
+
+    @property
+    def name(self) -> str:
+        """What draws."""
+        return "NumPy, float64"
+
+    def radiance(self, shot: Shot, sample: int, progress: Progress | None) -> Buffer:
+        """See Renderer."""
+        from sdfc.reference.render import radiance
+
+        return radiance(shot.compiled, shot.view, shot.params, shot.size, jitter(sample), progress)
+
+    def probe(self, shot: Shot, progress: Progress | None) -> list[Buffer]:
+        """See Renderer."""
+        from sdfc.reference.render import probe
+
+        return probe(shot.compiled, shot.view, shot.params, shot.size, progress)
+
+    def close(self) -> None:
+        """Holds nothing."""
