@@ -150,6 +150,12 @@ class Compiled:
                 self._texts[key] = assemble(self.scene.values, self.plan, self.setting, entry, stage)
         return self._texts[key]
 
+    def vertex(self) -> str:
+        """The vertex stage that radiance and probe are drawn with."""
+        from sdfc.glsl.assembly import vertex_shader
+
+        return vertex_shader()
+
     def uniforms(
         self,
         view: CameraChange,

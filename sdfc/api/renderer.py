@@ -72,7 +72,7 @@ class GlRenderer:
     def _draw(self, shot: Shot, entry: str, attachments: int, sample: int, progress: Progress | None) -> list[Buffer]:
         from sdfc.gpu.frame import Frame
 
-        program = self._program(shot.compiled.glsl(entry, "fragment"))
+        program = self._program(shot.compiled.glsl(entry, "fragment"), shot.compiled.vertex())
         uniforms = shot.compiled.uniforms(shot.view, shot.params, shot.size, jitter(sample))
         with Frame(self.device, *shot.size, attachments) as frame:
             frame.draw(program, uniforms, progress)
@@ -81,11 +81,11 @@ class GlRenderer:
             raise DeviceError(f"{self.name} reported success, but left pixels undrawn")
         return images
 
-    def _program(self, glsl: str) -> FragmentProgram:
+    def _program(self, glsl: str, vertex: str) -> FragmentProgram:
         from sdfc.gpu.program import FragmentProgram
 
         if glsl not in self._programs:
-            self._programs[glsl] = FragmentProgram(self.device, glsl)
+            self._programs[glsl] = FragmentProgram(self.device, glsl, vertex)
         return self._programs[glsl]
 
     def close(self) -> None:

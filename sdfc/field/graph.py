@@ -207,17 +207,22 @@ def topological(roots: Iterable[Expr], below: Callable[[Expr], Sequence[Expr]] =
     Iterative: depth is no limit. `below` may leave arguments out or put them in another order.
     """
     done: set[int] = set()
-    stack: list[tuple[Expr, bool]] = [(root, False) for root in reversed(list(roots))]
+    opened: set[int] = set()
+    stack = list(roots)
+    stack.reverse()
     while stack:
-        node, expanded = stack.pop()
-        if node.id in done:
-            continue
-        if expanded:
+        node = stack[-1]
+        if node.id not in opened:
+            opened.add(node.id)
+            for argument in reversed(below(node)):
+                if argument.id not in done:
+                    stack.append(argument)
+            if stack[-1] is not node:
+                continue
+        stack.pop()
+        if node.id not in done:
             done.add(node.id)
             yield node
-        else:
-            stack.append((node, True))
-            stack.extend((a, False) for a in reversed(below(node)) if a.id not in done)
 
 
 def substitute(root: Expr, replace: dict[Expr, Expr]) -> Expr:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sdfc.field.graph import LEAVES, Expr, Op, Type
+from sdfc.field.interval_jumps import JUMPS, MAX_JUMPS, Sides
 from sdfc.field.interval_rules import (
     EPSILON,
     RULES,
@@ -21,9 +22,11 @@ from sdfc.field.interval_rules import (
     Interval,
     added,
     down,
+    hull,
     multiplied,
     settled,
     up,
+    whole_where,
 )
 from sdfc.field.interval_slopes import SLOPES, STILL, Slope
 from sdfc.field.order import evaluation_order
@@ -103,6 +106,34 @@ class IntervalEvaluator:
             chunks.append(self._run({"p": points}, values, None)[0])
         return _joined([c.lo for c in chunks], t.shape[0]), _joined([c.hi for c in chunks], t.shape[0])
 
+    def across_jumps(
+        self, o: Array, d: Array, t_lo: Array, t_hi: Array, params: Parameters | None = None
+    ) -> tuple[Array, Array]:
+        """Bounds of root(o + t d) over t_lo <= t <= t_hi like `along_ray`'s, but the union of what lies on either side of
+        up to MAX_JUMPS jumps, not the hull across them. Isolated points apart: see `interval_jumps`."""
+        values = _parameters(self._nodes, params or {})
+        chunks = [
+            self._united(o[:, part], d[:, part], Interval(t_lo[part], t_hi[part]), values)
+            for part in _parts(t_lo.shape[0])
+        ]
+        count = t_lo.shape[0]
+        return _joined([c.lo for c in chunks], count), _joined([c.hi for c in chunks], count)
+
+    def _united(self, o: Array, d: Array, t: Interval, values: Mapping[str, Interval]) -> Interval:
+        points = _points_on_rays(o, d, t)
+        result: Interval | None = None
+        most, combination = 0, 0
+        while combination < 2 ** min(most, MAX_JUMPS):
+            sides = Sides(combination, t.lo.shape[0])
+            value, _ = self._run({"p": points}, values, None, sides)
+            if combination == 0:
+                few = sides.jumps <= MAX_JUMPS
+                most = int(np.max(sides.jumps, where=few, initial=0))
+            result = value if result is None else hull(result, value)
+            combination += 1
+        assert result is not None
+        return whole_where(~few, result)
+
     def directional(
         self, box: tuple[Array, Array], direction: Array, params: Parameters | None = None
     ) -> tuple[Array, Array]:
@@ -138,6 +169,7 @@ class IntervalEvaluator:
         inputs: Mapping[str, Interval],
         params: Mapping[str, Interval],
         seeds: Mapping[str, Interval] | None,
+        sides: Sides | None = None,
     ) -> tuple[Interval, Slope]:
         """Value and, where `seeds` gives the inputs' derivatives, slope of the root. Frees temporaries as it goes."""
         values: dict[int, Interval] = {}
@@ -150,6 +182,8 @@ class IntervalEvaluator:
                 else:
                     arguments = [values[a.id] for a in node.args]
                     value = RULES[node.op](node, arguments)
+                    if sides is not None and node.op in JUMPS:
+                        value = sides.take(node.op, arguments, value)
                     slope = None
                     if seeds is not None:
                         moving = [slopes[a.id] for a in node.args]

@@ -228,16 +228,19 @@ def arc_cosine(a: Interval) -> Interval:
     return Interval(np.maximum(down(lo, LIBRARY_ULPS), 0.0), up(hi, LIBRARY_ULPS) + LEAST)
 
 
-def arc_tangent2(y: Interval, x: Interval) -> Interval:
-    """atan2(y, x): the box's corners are extreme unless it meets the branch cut y = 0, x <= 0: then [-pi, pi]."""
+def corner_angles(y: Interval, x: Interval) -> Interval:
+    """atan2 over a box that does not cross the branch cut: its corners are extreme."""
     corners = [np.arctan2(b, a) for b in y for a in x]
     lo = np.minimum(np.minimum(corners[0], corners[1]), np.minimum(corners[2], corners[3]))
     hi = np.maximum(np.maximum(corners[0], corners[1]), np.maximum(corners[2], corners[3]))
-    cut = on_branch_cut(y, x)
+    return Interval(down(lo, LIBRARY_ULPS) - LEAST, up(hi, LIBRARY_ULPS) + LEAST)
+
+
+def arc_tangent2(y: Interval, x: Interval) -> Interval:
+    """atan2(y, x); [-pi, pi] where the box meets the branch cut y = 0, x <= 0."""
+    angles, cut = corner_angles(y, x), on_branch_cut(y, x)
     half_turn = np.pi * (1.0 + 2.0 * EPSILON)
-    lo = np.where(cut, -half_turn, down(lo, LIBRARY_ULPS) - LEAST)
-    hi = np.where(cut, half_turn, up(hi, LIBRARY_ULPS) + LEAST)
-    return Interval(lo, hi)
+    return Interval(np.where(cut, -half_turn, angles.lo), np.where(cut, half_turn, angles.hi))
 
 
 def on_branch_cut(y: Interval, x: Interval) -> NDArray[np.bool_]:

@@ -13,7 +13,15 @@ def evaluation_order(roots: Iterable[Expr], below: Callable[[Expr], Sequence[Exp
     """
     roots = list(roots)
     need: dict[int, int] = {}
+    turned: dict[int, Sequence[Expr]] = {}  # the arguments of a node, where they are better taken in another order
     for node in topological(roots, below):
-        demands = sorted((need[a.id] for a in below(node)), reverse=True)
-        need[node.id] = max((demand + held for held, demand in enumerate(demands)), default=0) or len(demands)
-    return list(topological(roots, lambda node: sorted(below(node), key=lambda a: -need[a.id])))
+        args = below(node)
+        if len(args) < 2:
+            need[node.id] = max(1, need[args[0].id]) if args else 0
+            continue
+        demands = [need[a.id] for a in args]
+        if demands != sorted(demands, reverse=True):
+            turned[node.id] = args = sorted(args, key=lambda a: -need[a.id])
+            demands.sort(reverse=True)
+        need[node.id] = max(len(args), *(demand + held for held, demand in enumerate(demands)))
+    return list(topological(roots, lambda node: turned.get(node.id) or below(node)))

@@ -37,6 +37,9 @@ class Variable:
     note: str = ""
 
 
+VERSION = "450 core"
+
+
 @cache
 def _environment() -> Environment:
     return Environment(
@@ -54,6 +57,11 @@ def assemble(graph: FieldGraph, plan: Plan, setting: Setting, entry: str, stage:
     return _Assembly(graph, plan, setting, entry).text(stage)
 
 
+def vertex_shader() -> str:
+    """The vertex stage of the radiance and probe shaders."""
+    return _environment().get_template("entry/camera.vert").render(version=VERSION)
+
+
 class _Assembly:
     def __init__(self, graph: FieldGraph, plan: Plan, setting: Setting, entry: str) -> None:
         self._graph = graph
@@ -67,7 +75,7 @@ class _Assembly:
     def text(self, stage: str) -> str:
         suffix = {"fragment": "frag", "compute": "comp"}[stage]
         template = _environment().get_template(f"entry/{self._entry}.{suffix}")
-        text = template.render(self._context())
+        text = template.render(self._context() | self._camera(stage))
         return "\n".join(line.rstrip() for line in text.split("\n")).replace("\n\n\n", "\n\n")
 
     def _context(self) -> dict[str, object]:
@@ -80,7 +88,7 @@ class _Assembly:
         map_text = distance.write(plan.root) if has_map else ""
         surface = SurfaceWriter(self._graph, self._functions, self._live, list(plan.materials), self._setting.unpainted).write(plan.root)
         context: dict[str, object] = {
-            "version": "450 core",
+            "version": VERSION,
             "header": self._header(),
             "radius": literal(plan.radius),
             "centre": _vector(plan.centre),
@@ -106,6 +114,14 @@ class _Assembly:
         context["live"] = [Variable(type_name(e.type), n) for n, e in self._live.values]
         context["live_lines"] = self._live_lines()
         return context
+
+    def _camera(self, stage: str) -> dict[str, object]:
+        """A shader that stands alone reads its camera from uniforms; ours come with a vertex stage that is cheaper."""
+        alone = self._entry == "picture"
+        return {
+            "camera_template": f"lib/camera_{'uniform' if alone else 'varying'}.glsl",
+            "pixel_centre": "gl_FragCoord.xy" if stage == "fragment" else "vec2(gl_GlobalInvocationID.xy) + 0.5",
+        }
 
     def _lighting(self, properties: dict[str, str]) -> dict[str, object]:
         writer = LightWriter(self._graph, self._live, self._plan.centre, self._plan.radius)

@@ -216,7 +216,7 @@ def _infix(node: Expr, text_of: Lookup, depth: int) -> Text:
         operator = _EXACT_NEGATION[node.op]
         right = constant(second.type, [-n for n in second.numbers])
     associates = node.op in (Op.AND, Op.OR)
-    return Text(f"{left.leading(level)}{operator}{right.within(level )}", level, depth)
+    return Text(f"{left.leading(level)}{operator}{right.within(level if associates else level + 1)}", level, depth)
 
 
 def _call(node: Expr, text_of: Lookup, depth: int) -> Text:

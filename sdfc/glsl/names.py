@@ -94,7 +94,8 @@ def literal(x: float) -> str:
         raise InternalError(f"{x} cannot be written as a GLSL number")
     if rounded == 0.0:
         return "0.0"
-    digits = next(text for text in (f"{rounded:.{n}g}" for n in range(1, 10)) if _float32(text) == rounded)
+    # decimals of 6 digits are all different float32s, so the first that fits is the shortest
+    digits = next(text for text in (f"{rounded:.{n}g}" for n in range(6, 10)) if _float32(text) == rounded)
     if 1e-4 <= abs(rounded) < 1e9:
         return repr(float(digits))
     mantissa, _, exponent = digits.partition("e")

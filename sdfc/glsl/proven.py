@@ -80,7 +80,7 @@ class ProvenWriter:
         name = f"solid_{self._count}"
         body = Body(self._live)
         names = self._intervals(body, component)
-        body.add("float t, next = start;")
+        body.add(f"float t, next = {self._start(component, names)};")
         body.add("do {")
         inner = Body(self._live, 2)
         inner.add("t = next;")

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 Value: TypeAlias = "float | tuple[float, ...]"
 
 # One triangle that covers the frame, from the vertex's number alone: no buffers, no attributes, no diagonal seam.
-_VERTEX_SHADER = """#version 450 core
+COVERING = """#version 450 core
 void main() {
     gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
 }
@@ -77,12 +77,12 @@ def _excerpt(complaint: Complaint, text: str) -> str:
 class FragmentProgram:
     """A compiled fragment shader, drawn as one triangle that covers the frame."""
 
-    def __init__(self, device: Device, fragment: str) -> None:
+    def __init__(self, device: Device, fragment: str, vertex: str = COVERING) -> None:
         import moderngl
 
         self.device = device
         try:
-            self._program = device.context.program(vertex_shader=_VERTEX_SHADER, fragment_shader=fragment)
+            self._program = device.context.program(vertex_shader=vertex, fragment_shader=fragment)
         except moderngl.Error as error:
             raise ShaderRefusedError(device.renderer, parse_complaints(str(error)), fragment) from error
         self._uniforms: dict[str, Any] = {

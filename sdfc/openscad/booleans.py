@@ -10,7 +10,7 @@ from sdfc.openscad.colors import material_of
 from sdfc.openscad.generators import Map3, Mapped, Together, generators, moved, refused
 from sdfc.openscad.invocation import Invocation
 from sdfc.openscad.part import Flat, Part, Solid
-from sdfc.openscad.refusal import Refusal
+from sdfc.openscad.refusal import RefusalError
 
 SINGULAR = 1e-9  # of the product of the columns' lengths
 
@@ -109,7 +109,7 @@ def _is_singular(rows: list[tuple[float, ...]]) -> bool:
 
 
 def resize(m: Invocation) -> Part | None:
-    """Scaled about the origin until the box around has a size; 0 keeps an axis, or scales it alike where `auto` says so."""
+    """Scaled about the origin until the box around has a size; 0 keeps an axis, or with `auto` scales it alike."""
     part = union(m)
     if part is None:
         return None
@@ -146,7 +146,7 @@ def _size(part: Part) -> list[float]:
         case Flat():
             box = plane.extent(part.plane)
             if box is None or not plane.is_tight(part.plane):
-                raise Refusal("the size of this is not known, so that `resize` cannot scale it")
+                raise RefusalError("the size of this is not known, so that `resize` cannot scale it")
             return [box[1][0] - box[0][0], box[1][1] - box[0][1]]
         case Solid():
             spans = generators(part.hull)

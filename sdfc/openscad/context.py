@@ -13,7 +13,7 @@ from sdfc.scene.library import Library
 from sdfc.shape.definition import Argument
 from sdfc.shape.graph import Affine, Shape, ShapeGraph
 from sdfc.shape.material import Material
-from sdfc.shape.matrix import Matrix, inverse, matrix
+from sdfc.shape.matrix import inverse, matrix
 
 Y_TO_Z: Map3 = ((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, -1.0, 0.0), (0.0, 1.0, 0.0, 0.0))
 
@@ -72,8 +72,8 @@ class Context:
 
     def box(self, lo: Point, hi: Point, span: Span) -> Shape:
         """An upright box between two corners."""
-        size = [h - l for l, h in zip(lo, hi, strict=True)]
-        x, y, z = (0.5 * (l + h) for l, h in zip(lo, hi, strict=True))
+        size = [b - a for a, b in zip(lo, hi, strict=True)]
+        x, y, z = (0.5 * (a + b) for a, b in zip(lo, hi, strict=True))
         shape = self.apply("box", span, size=self.vector(size))
         return self.moved(((1, 0, 0, x), (0, 1, 0, y), (0, 0, 1, z)), shape, span)
 

@@ -10,7 +10,7 @@ from sdfc.openscad.invocation import Invocation
 from sdfc.openscad.outline import Point2
 from sdfc.openscad.part import Flat
 from sdfc.openscad.plane import Common, Joined, Outside, Plane, Polygon
-from sdfc.openscad.refusal import Refusal
+from sdfc.openscad.refusal import RefusalError
 from sdfc.openscad.solids import is_size
 
 
@@ -57,7 +57,9 @@ def _are_apart(lines: Sequence[tuple[Point2, ...]]) -> bool:
 
 def _nested(lines: Sequence[tuple[Point2, ...]]) -> Plane:
     """Lines that do not meet: each of even depth, without those one deeper within it."""
-    around = [{j for j, o in enumerate(lines) if j != i and outline.contains(o, line[0])} for i, line in enumerate(lines)]
+    around = [
+        {j for j, o in enumerate(lines) if j != i and outline.contains(o, line[0])} for i, line in enumerate(lines)
+    ]
     parts: list[Plane] = []
     for i, line in enumerate(lines):
         if len(around[i]) % 2 == 0:
@@ -86,6 +88,7 @@ def offset(m: Invocation) -> Flat | None:
     if not (math.isfinite(radius) and math.isfinite(delta)):
         raise m.wrong("r" if m.argument("r") else "delta", "finite")
     if delta and m.flag("chamfer"):
-        raise Refusal("`offset` with cut corners has no exact form here", "`chamfer = false`, or `r`, has one")
+        raise RefusalError("`offset` with cut corners has no exact form here", "`chamfer = false`, or `r`, has one")
     made = plane.mitred(child, delta) if delta else plane.grown(child, radius)
-    return None if made is None else Flat(made, is_convex=all(f.is_convex for f in m.children if isinstance(f, Flat)) and len(flats) == 1)
+    parts = m.parts()
+    return None if made is None else Flat(made, is_convex=len(parts) == 1 and parts[0].is_convex)

@@ -1,4 +1,4 @@
-"""What the convex hull of a solid is spanned by: points, balls and discs. Asked for only under `hull` and `minkowski`."""
+"""What spans the convex hull of a solid: points, balls and discs. Asked for only under `hull` and `minkowski`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias, assert_never
 
 from sdfc.openscad.polytope import Point
-from sdfc.openscad.refusal import Refusal
+from sdfc.openscad.refusal import RefusalError
 
 Map3: TypeAlias = tuple[tuple[float, float, float, float], ...]  # three rows: linear part, offset
 
@@ -32,7 +32,7 @@ class Generator:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Spanned:
-    """Made when asked for. May raise Refusal."""
+    """Made when asked for. May raise RefusalError."""
 
     make: Callable[[], Sequence[Generator]] = field(repr=False)
 
@@ -57,7 +57,7 @@ def refused(message: str) -> Spanned:
     """For a solid whose hull is not known."""
 
     def make() -> Sequence[Generator]:
-        raise Refusal(message)
+        raise RefusalError(message)
 
     return Spanned(make)
 
@@ -96,7 +96,7 @@ def moved(move: Map3, generator: Generator) -> Generator:
     if generator.axis is None:
         factor = similarity(move)
         if factor is None:
-            raise Refusal("the hull of a stretched ball has no exact form")
+            raise RefusalError("the hull of a stretched ball has no exact form")
         return Generator(center, generator.radius * factor)
     return _moved_disc(move, generator, center, generator.axis)
 
@@ -105,7 +105,7 @@ def _moved_disc(move: Map3, disc: Generator, center: Point, axis: Point) -> Gene
     u, v = frame(axis)
     a, b = _direction(move, u), _direction(move, v)
     if abs(_norm(a) - _norm(b)) > SIMILAR * _norm(a) or abs(_dot(a, b)) > SIMILAR * _norm(a) * _norm(b):
-        raise Refusal("the hull of a stretched disc has no exact form")
+        raise RefusalError("the hull of a stretched disc has no exact form")
     normal = cross(a, b)
     size = _norm(normal)
     return Generator(center, disc.radius * math.sqrt(size), (normal[0] / size, normal[1] / size, normal[2] / size))
@@ -132,8 +132,7 @@ def similarity(move: Map3) -> float | None:
 
 def frame(axis: Point) -> tuple[Point, Point]:
     """Two unit vectors that make a right-handed frame with a unit axis."""
-    x, y, z = axis
-    helper = (1.0, 0.0, 0.0) if abs(x) < 0.6 else (0.0, 1.0, 0.0)
+    helper = (1.0, 0.0, 0.0) if abs(axis[0]) < 0.6 else (0.0, 1.0, 0.0)
     u = cross(helper, axis)
     size = _norm(u)
     u = (u[0] / size, u[1] / size, u[2] / size)

@@ -18,7 +18,7 @@ MOST_FACETS = 10_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Invocation:
-    """`positional`: the names that arguments without a name have, in order. `is_painted`: a colour outside of it rules."""
+    """`positional`: the names of arguments without a name, in order. `is_painted`: a colour outside of it rules."""
 
     call: Call
     context: Context

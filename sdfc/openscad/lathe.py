@@ -14,7 +14,7 @@ from sdfc.openscad.outline import Edge, Pocketed, Point2
 from sdfc.openscad.plane import Common, Disc, Joined, Outside, Plane, Polygon, Stroke
 from sdfc.openscad.polytope import Plane as Plane3
 from sdfc.openscad.profile import profile
-from sdfc.openscad.refusal import Refusal
+from sdfc.openscad.refusal import RefusalError
 from sdfc.shape.graph import Shape
 
 
@@ -104,7 +104,9 @@ class Lathe:
 
     def _curved(self, leaf: Disc | Stroke) -> Shape | None:
         if self.facets is not None:
-            raise Refusal("a true curve in a `rotate_extrude` of few pieces has no exact form", "give both the same $fn")
+            raise RefusalError(
+                "a true curve in a `rotate_extrude` of few pieces has no exact form", "give both the same $fn"
+            )
         box = plane.extent(leaf)
         if box is not None and box[1][0] <= 0.0:
             return None
@@ -127,7 +129,7 @@ class Lathe:
     def _faceted(self, points: Sequence[Point2]) -> Shape:
         """In flat pieces, {(largest of the pieces' distances from the axis, z) in the polygon}: sides become planes."""
         if not outline.is_simple(points) or len(points) > 500:
-            raise Refusal("a polygon that crosses itself cannot be turned in flat pieces")
+            raise RefusalError("a polygon that crosses itself cannot be turned in flat pieces")
         parts = outline.pocketed(points)
         around = [self.start + self.angle * i / self.pieces for i in range(self.pieces + 1)]
         corners = [(x * math.cos(a), x * math.sin(a), z) for x, z in outline.hull(points) for a in around]
@@ -163,7 +165,6 @@ class Lathe:
         step = self.angle / self.pieces
         across /= math.cos(0.5 * step) if self.pieces > 1 or abs(step) < math.pi else 1.0
         length = math.hypot(across, up)
+        across, up, offset = across / length, up / length, offset / length
         middles = [self.start + step * (i + 0.5) for i in range(self.pieces)]
-        return [
-            ((across * math.cos(a) / length, across * math.sin(a) / length, up / length), offset / length) for a in middles
-        ]
+        return [((across * math.cos(a), across * math.sin(a), up), offset) for a in middles]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from sdfc.openscad.refusal import Refusal
+from sdfc.openscad.refusal import RefusalError
 
 Point2: TypeAlias = tuple[float, float]
 Edge: TypeAlias = tuple[Point2, float]  # unit normal n (out of the region) and offset d: inside where n . p <= d
@@ -123,8 +123,8 @@ def contains(points: Sequence[Point2], p: Point2) -> bool:
 
 
 def mitred(points: Sequence[Point2], amount: float) -> tuple[Point2, ...]:
-    """Every side moved out by `amount`, corners kept sharp. Raises Refusal where sides would vanish or collide."""
-    ordered = [p for p in (points if area(points) > 0.0 else tuple(reversed(points)))]
+    """Every side moved out by `amount`, corners kept sharp. Raises RefusalError where sides would vanish or collide."""
+    ordered = tuple(points) if area(points) > 0.0 else tuple(reversed(points))
     n = len(ordered)
     corners = [p for i, p in enumerate(ordered) if _bend(ordered[i - 1], p, ordered[(i + 1) % n])]
     sides = edges(corners)  # sides[i] ends at corner i
@@ -141,7 +141,7 @@ def mitred(points: Sequence[Point2], amount: float) -> tuple[Point2, ...]:
         for i in range(n)
     )
     if not kept or not is_simple(made):
-        raise Refusal("the sides of this shape collide as they are offset", "no exact form is known here for that")
+        raise RefusalError("the sides of this shape collide as they are offset", "no exact form is known here for that")
     return tuple(made)
 
 
@@ -187,7 +187,7 @@ def pocketed(points: Sequence[Point2]) -> Pocketed:
 def _pocketed(points: tuple[Point2, ...], is_open: bool, depth: int) -> Pocketed:
     """`points` counter-clockwise; if open, the side from the last to the first corner is left out."""
     if depth > 100:
-        raise Refusal("this polygon winds too much")
+        raise RefusalError("this polygon winds too much")
     corners = hull(points)
     place = {p: i for i, p in enumerate(points)}
     around = sorted(place[p] for p in corners)

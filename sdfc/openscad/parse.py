@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache
 from importlib.resources import files
 from typing import Any
 
@@ -11,6 +11,7 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedTok
 
 from sdfc.diagnostics import SceneError, Source, Span, scene_error
 from sdfc.openscad.syntax import Argument, Call, Value
+from sdfc.syntax.tables import load
 
 _WORDS: dict[str, Value] = {"true": True, "false": False, "undef": None}
 _READABLE = {
@@ -32,7 +33,7 @@ _READABLE = {
 }
 
 
-class _WrongValue(Exception):
+class _WrongValueError(Exception):
     """A token that no value can be made of; carries it."""
 
     def __init__(self, token: Token) -> None:
@@ -75,7 +76,7 @@ def _value(token: Any) -> tuple[int, int, Value]:
     try:
         value = _CONVERT[token.type](token)
     except (ValueError, KeyError):
-        raise _WrongValue(token) from None
+        raise _WrongValueError(token) from None
     return token.start_pos, token.end_pos, value
 
 
@@ -87,10 +88,10 @@ _CONVERT: dict[str, Any] = {
 }
 
 
-@lru_cache(maxsize=1)
+@cache
 def _parser() -> Lark:
     grammar = files("sdfc.grammar").joinpath("csg.lark").read_text(encoding="utf-8")
-    return Lark(grammar, parser="lalr", lexer="contextual", transformer=_Build(), maybe_placeholders=False)
+    return load(grammar, _Build())
 
 
 def parse(source: Source) -> tuple[Call, ...]:
@@ -99,7 +100,7 @@ def parse(source: Source) -> tuple[Call, ...]:
         calls: tuple[Call, ...] = _parser().parse(source.text)  # type: ignore[assignment]
     except UnexpectedInput as error:
         raise _unexpected(source, error) from None
-    except _WrongValue as error:
+    except _WrongValueError as error:
         raise _wrong_value(source, error.token) from None
     return calls
 
@@ -108,7 +109,9 @@ def _wrong_value(source: Source, token: Token) -> SceneError:
     span = Span(source, token.start_pos or 0, token.end_pos or 0)
     if token.type == "NAME":
         return scene_error(
-            f"`{token}` has no value here", span, "flattened CSG has no variables: write it with `openscad -o x.csg x.scad`"
+            f"`{token}` has no value here",
+            span,
+            "flattened CSG has no variables: write it with `openscad -o x.csg x.scad`",
         )
     return scene_error("this is not a list of numbers", span)
 
@@ -119,13 +122,15 @@ def _unexpected(source: Source, error: UnexpectedInput) -> SceneError:
         case UnexpectedToken(token=Token(type="$END")):
             end = len(text.rstrip())
             return scene_error(
-                "the file ends in the middle of a statement", Span(source, max(0, end - 1), max(1, end)),
+                "the file ends in the middle of a statement",
+                Span(source, max(0, end - 1), max(1, end)),
                 f"expected {_expected(error.expected)}",
             )
         case UnexpectedToken(token=token):
             span = Span(source, token.start_pos or 0, token.end_pos or 0)
             return scene_error(f"`{_short(token)}` is not expected here", span, f"expected {_expected(error.expected)}")
-        case UnexpectedCharacters(pos_in_stream=start):
+        case UnexpectedCharacters():
+            start = error.pos_in_stream or 0
             span = Span(source, start, start + 1)
             hint = f"expected {_expected(error.allowed or ())}"
             return scene_error(f"{text[start]!r} is not expected here", span, hint)

@@ -9,7 +9,7 @@ from typing import TypeAlias, TypeVar, assert_never
 
 from sdfc.openscad import outline
 from sdfc.openscad.outline import Point2
-from sdfc.openscad.refusal import Refusal
+from sdfc.openscad.refusal import RefusalError
 
 Map2: TypeAlias = tuple[tuple[float, float, float], tuple[float, float, float]]  # rows: linear part, offset
 T = TypeVar("T")
@@ -150,7 +150,9 @@ def moved(root: Plane, move: Map2) -> Plane:
             case Stroke():
                 factor = similarity(move)
                 if factor is None:
-                    raise Refusal("an offset shape can only be scaled alike in x and y", "scale it before `offset`")
+                    raise RefusalError(
+                        "an offset shape can only be scaled alike in x and y", "scale it before `offset`"
+                    )
                 return Stroke(tuple(moved_point(move, p) for p in node.points), node.radius * factor)
             case Joined():
                 return Joined(tuple(parts))
@@ -167,7 +169,7 @@ def moved(root: Plane, move: Map2) -> Plane:
 def grown(root: Plane, amount: float) -> Plane | None:
     """`offset(r = amount)`: all points within `amount`, or what is farther inside than `-amount`; None for nothing.
 
-    Growing goes into a union, and shrinking into an intersection; the other way round corners would be wrong: Refusal.
+    Growing goes into a union, and shrinking into an intersection; the other way round corners would be wrong: RefusalError.
     """
 
     def image(node: Plane, level: int, parts: list[Plane | None]) -> Plane | None:
@@ -177,7 +179,7 @@ def grown(root: Plane, amount: float) -> Plane | None:
                 return _grown_polygon(node, by)
             case Disc():
                 if node.radius is None:
-                    raise Refusal("the offset of an ellipse has no exact form")
+                    raise RefusalError("the offset of an ellipse has no exact form")
                 return circle(node.radius + by, node.center) if node.radius + by > 0.0 else None
             case Stroke():
                 return Stroke(node.points, node.radius + by) if node.radius + by > 0.0 else None
@@ -190,7 +192,7 @@ def grown(root: Plane, amount: float) -> Plane | None:
                     return None
                 return Common(tuple(p for p in parts if p is not None))
             case Joined() | Common():
-                raise Refusal(
+                raise RefusalError(
                     "the offset of this has no exact form",
                     "a union can grow, and a difference or an intersection can shrink",
                 )
@@ -213,8 +215,25 @@ def _grown_polygon(polygon: Polygon, amount: float) -> Plane | None:
     return Joined((polygon, wall)) if amount > 0.0 else Common((polygon, Outside(wall)))
 
 
+def mitred(root: Plane, amount: float) -> Plane | None:
+    """`offset(delta = amount)`: polygons with sharp corners, and discs. Raises RefusalError for what is not one of these."""
+    match root:
+        case Polygon():
+            if outline.is_convex(root.points) and amount < 0.0:
+                made = outline.shrunk(root.points, -amount)
+            elif outline.is_simple(root.points):
+                made = outline.mitred(root.points, amount)
+            else:
+                raise RefusalError("a polygon that crosses itself cannot be offset")
+            return Polygon(made) if made else None
+        case Disc() if root.radius is not None:
+            return circle(root.radius + amount, root.center) if root.radius + amount > 0.0 else None
+        case _:
+            raise RefusalError("the offset by `delta` of this has no exact form", "one polygon or circle has")
+
+
 def hull_of_discs(discs: list[tuple[Point2, float]]) -> Plane | None:
-    """The convex hull of discs and points (radius 0): the polygon through all points of tangency, and the discs on it."""
+    """The convex hull of discs and points (radius 0): the polygon through the points of tangency, and the discs."""
     touched: list[Point2] = []
     outer: list[Disc] = []
     kept = _not_within(discs)
@@ -291,7 +310,7 @@ def is_tight(root: Plane) -> bool:
 
 
 def spanning_discs(root: Plane) -> list[tuple[Point2, float]]:
-    """Points (radius 0) and discs whose convex hull is that of the shape. Raises Refusal where that is not known."""
+    """Points (radius 0) and discs whose convex hull is that of the shape. Raises RefusalError where that is not known."""
 
     def discs(node: Plane, _: int, parts: list[list[tuple[Point2, float]]]) -> list[tuple[Point2, float]]:
         match node:
@@ -299,14 +318,14 @@ def spanning_discs(root: Plane) -> list[tuple[Point2, float]]:
                 return [(p, 0.0) for p in node.points]
             case Disc():
                 if node.radius is None:
-                    raise Refusal("the hull of an ellipse has no exact form")
+                    raise RefusalError("the hull of an ellipse has no exact form")
                 return [(node.center, node.radius)]
             case Stroke():
                 return [(p, node.radius) for p in node.points]
             case Joined():
                 return [d for part in parts for d in part]
             case Common() | Outside():
-                raise Refusal("the hull of a difference or an intersection has no exact form")
+                raise RefusalError("the hull of a difference or an intersection has no exact form")
             case _:
                 assert_never(node)
 

@@ -1,7 +1,7 @@
 """What has no exact form here."""
 
 
-class Refusal(Exception):
+class RefusalError(Exception):
     """Raised where only the geometry is known; the evaluator adds the place and makes it a SceneError."""
 
     def __init__(self, message: str, hint: str | None = None) -> None:

@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from sdfc.diagnostics import Span
 from sdfc.openscad import polytope
 from sdfc.openscad.context import Context
-from sdfc.openscad.generators import Generator, cross, frame
+from sdfc.openscad.generators import Generator, frame
 from sdfc.openscad.polytope import Point
-from sdfc.openscad.refusal import Refusal
+from sdfc.openscad.refusal import RefusalError
 from sdfc.shape.graph import Shape
 
 MOST = 200  # balls that are not within others
@@ -29,7 +29,7 @@ def solid(context: Context, balls: Sequence[Generator], span: Span) -> Shape:
     """At least one of the balls has a radius above 0."""
     kept = _outermost(balls)
     if len(kept) > MOST:
-        raise Refusal(f"the hull of more than {MOST} balls is too much work")
+        raise RefusalError(f"the hull of more than {MOST} balls is too much work")
     if len(kept) == 1:
         return _ball(context, kept[0], span)
     box = _box_corners(kept)
@@ -98,7 +98,7 @@ def _edge(a: Generator, b: Generator, every: Sequence[Generator]) -> list[Point]
 
 
 def _free_ends(forbidden: Sequence[Arc]) -> list[float] | None:
-    """The ends of what arcs (start, length) leave of a circle; none where they are absent; None where nothing is left."""
+    """The ends of what arcs (start, length) leave of a circle: [] where there are none, None where nothing is left."""
     if not forbidden:
         return []
     ordered = sorted(forbidden)
@@ -108,8 +108,6 @@ def _free_ends(forbidden: Sequence[Arc]) -> list[float] | None:
         if start > reached + SHORTEST_ARC:
             ends += [reached, start]
         reached = max(reached, start + length)
-    if ordered[0][0] + math.tau > reached + SHORTEST_ARC and not ends:
-        ends += [reached, ordered[0][0] + math.tau]
     return ends or None
 
 
@@ -161,7 +159,7 @@ def _box_corners(balls: Sequence[Generator]) -> tuple[Point, Point] | None:
     if len(balls) != 8 or len({b.radius for b in balls}) > 1:
         return None
     lo, hi = (tuple(end(b.center[i] for b in balls) for i in range(3)) for end in (min, max))
-    near = SAME * max(h - l for l, h in zip(lo, hi, strict=True))
+    near = SAME * max(b - a for a, b in zip(lo, hi, strict=True))
     found = set()
     for ball in balls:
         for i in range(3):
@@ -174,10 +172,7 @@ def _box_corners(balls: Sequence[Generator]) -> tuple[Point, Point] | None:
 
 
 def _rounded_box(context: Context, lo: Point, hi: Point, radius: float, span: Span) -> Shape:
-    size = [h - l + 2.0 * radius for l, h in zip(lo, hi, strict=True)]
+    size = [b - a + 2.0 * radius for a, b in zip(lo, hi, strict=True)]
     shape = context.apply("rounded_box", span, size=context.vector(size), radius=context.number(radius))
-    x, y, z = (0.5 * (l + h) for l, h in zip(lo, hi, strict=True))
+    x, y, z = (0.5 * (a + b) for a, b in zip(lo, hi, strict=True))
     return _placed(context, shape, (x, y, z), span)
-
-
-__all__ = ["along", "cross", "solid"]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 from sdfc.openscad import polytope
 from sdfc.openscad.generators import Generator, Spanned
 from sdfc.openscad.invocation import Invocation
 from sdfc.openscad.part import Solid
 from sdfc.openscad.polytope import Plane, Point
-from sdfc.openscad.refusal import Refusal
+from sdfc.openscad.refusal import RefusalError
 
 Z: Point = (0.0, 0.0, 1.0)
 Ring = tuple[float, float]  # radius and height of a ring of corners
@@ -86,10 +87,10 @@ def ring_corners(rings: Sequence[Ring], facets: int) -> list[Point]:
 
 
 def ring_planes(rings: Sequence[Ring], facets: int) -> list[Plane]:
-    """The slanted faces between rings, without the two horizontal ones. A face is flat: its middle is at r cos(pi / n)."""
+    """The faces between rings, without the lowest and the highest. A face is flat: its middle is at r cos(pi / n)."""
     apothem = math.cos(math.pi / facets)
     planes = []
-    for (r, z), (s, top) in zip(rings, rings[1:], strict=False):
+    for (r, z), (s, top) in pairwise(rings):
         across, up = top - z, apothem * (r - s)
         length = math.hypot(across, up)
         across, up = across / length, up / length
@@ -113,7 +114,9 @@ def polyhedron(m: Invocation) -> Solid | None:
     for face in faces:
         corners = [points[i] for i in face]
         if not any(all(abs(_height(plane, p)) <= near for p in corners) for plane in hull.planes):
-            raise Refusal("a `polyhedron` that is not convex has no exact form", "put it together from convex ones")
+            raise RefusalError(
+                "a `polyhedron` that is not convex has no exact form", "put it together from convex ones"
+            )
     return Solid(m.context.polytope(hull.corners, hull.planes, m.span), points_hull(hull.corners), is_convex=True)
 
 

@@ -1,6 +1,6 @@
 """From the plane to space: `linear_extrude` and `rotate_extrude`.
 
-Both commute with booleans. So each polygon and disc becomes a solid by itself, one with a closed form where there is one.
+Both commute with booleans: each polygon and disc becomes a solid by itself, with a closed form where there is one.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from sdfc.openscad.lathe import Lathe
 from sdfc.openscad.part import Solid
 from sdfc.openscad.plane import Plane
 from sdfc.openscad.profile import profile
-from sdfc.openscad.refusal import Refusal
+from sdfc.openscad.refusal import RefusalError
 from sdfc.openscad.solids import Z, is_size
 from sdfc.openscad.tower import Tower
 
@@ -44,7 +44,7 @@ def _extruded_hull(root: Plane, tower: Tower) -> list[Generator]:
     for (x, y), radius in plane.spanning_discs(root):
         for z, a, b in ((tower.low, 1.0, 1.0), (tower.high, tower.x, tower.y)):
             if radius and a != b:
-                raise Refusal("the hull of this extrusion has no exact form")
+                raise RefusalError("the hull of this extrusion has no exact form")
             made.append(Generator((a * x, b * y, z), a * radius, Z if a * radius else None))
     return made
 
@@ -63,7 +63,9 @@ def rotate_extrude(m: Invocation) -> Solid | None:
     lo, hi = box[0][0], box[1][0]
     margin = 1e-6 * (hi - lo)
     if lo < -margin and hi > margin and plane.is_tight(root):
-        raise Refusal("this shape lies on both sides of the axis", "all of it must have x >= 0, or all of it x <= 0")
+        raise RefusalError(
+            "this shape lies on both sides of the axis", "all of it must have x >= 0, or all of it x <= 0"
+        )
     is_mirrored = -lo > hi
     if is_mirrored:
         root = plane.moved(root, ((-1.0, 0.0, 0.0), (0.0, 1.0, 0.0)))
@@ -80,7 +82,7 @@ def _turned_hull(root: Plane, lathe: Lathe) -> Spanned:
         made = []
         for (x, z), radius in plane.spanning_discs(root):
             if radius and abs(x) > 1e-9 * radius:
-                raise Refusal("the hull of a ring has no exact form")
+                raise RefusalError("the hull of a ring has no exact form")
             is_disc = x > 0.0 and not radius
             made.append(Generator((0.0, 0.0, z), x if is_disc else radius, Z if is_disc else None))
         return made

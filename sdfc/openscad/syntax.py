@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from sdfc.diagnostics import Source, Span
 
-Value: TypeAlias = "float | bool | str | None | tuple[Value, ...]"  # None is OpenSCAD's undef
+Value: TypeAlias = "float | bool | str | tuple[Value, ...] | None"  # None is OpenSCAD's undef
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,7 +22,7 @@ class Argument:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Call:
-    """`name(arguments) { children }`, with its modifiers (`%`, `#`, `!`, `*`) in front. `start` to `end` is the name."""
+    """`name(arguments) { children }`, with its modifiers (`%`, `#`, `!`, `*`) in front; its place is the name's."""
 
     name: str
     modifiers: str

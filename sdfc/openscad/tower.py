@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from typing import assert_never
 
 from sdfc.diagnostics import Span
-from sdfc.openscad import outline, plane
+from sdfc.openscad import outline
 from sdfc.openscad.context import Y_TO_Z, Context
 from sdfc.openscad.outline import Edge, Pocketed, Point2
 from sdfc.openscad.plane import Common, Disc, Joined, Outside, Plane, Polygon, Stroke
 from sdfc.openscad.polytope import Plane as Plane3
 from sdfc.openscad.polytope import Point
 from sdfc.openscad.profile import profile
-from sdfc.openscad.refusal import Refusal
+from sdfc.openscad.refusal import RefusalError
 from sdfc.shape.graph import Shape
 
 MOST_SIDES = 64  # of a convex polygon whose sides become planes; one with more is extruded as it is
@@ -109,7 +109,7 @@ class Tower:
         scale = self.x
         if self.x != self.y:
             if min(abs(a), abs(b)) > 1e-9:
-                raise Refusal("this extrusion has no exact form", UNEVEN)
+                raise RefusalError("this extrusion has no exact form", UNEVEN)
             scale = self.x if abs(a) > abs(b) else self.y
         slope = (scale - 1.0) / self.height
         c = -d * slope
@@ -124,7 +124,7 @@ class Tower:
     def _disc(self, disc: Disc, reach: Reach) -> Shape:
         """A cylinder or a cone, sheared where the disc is not around the origin."""
         if self.x != self.y:
-            raise Refusal("this extrusion has no exact form", UNEVEN)
+            raise RefusalError("this extrusion has no exact form", UNEVEN)
         context, radius = self.context, disc.radius
         (a, b, x), (c, d, y) = disc.map
         if radius is not None:
@@ -144,7 +144,7 @@ class Tower:
     def _as_it_is(self, leaf: Polygon | Stroke, reach: Reach) -> Shape:
         """The distance in the plane, extruded: exact, but without a closed form for rays."""
         if (self.x, self.y) != (1.0, 1.0):
-            raise Refusal("the scaled extrusion of this has no exact form", "its sides cross, or it was offset")
+            raise RefusalError("the scaled extrusion of this has no exact form", "its sides cross, or it was offset")
         context = self.context
         flat = profile(context, leaf, self.span)
         shape = context.apply("extrude", self.span, flat, height=context.number(reach.high - reach.low))
@@ -158,11 +158,15 @@ class Tower:
         rate = context.number(twist / self.height)
         shape = context.apply("extrude_twisted", span, flat, height=height, rate=rate)
         if self.x != self.y or self.x == 0.0:
-            raise Refusal("a twisted extrusion with this scale has no exact form", "one scale above 0 for x and y has")
+            raise RefusalError(
+                "a twisted extrusion with this scale has no exact form", "one scale above 0 for x and y has"
+            )
         if self.x != 1.0:
             lying = context.moved(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0)), shape, span)
             bottom, top = context.number(1.0), context.number(self.x)
-            shape = context.moved(Y_TO_Z, context.apply("taper", span, lying, bottom=bottom, top=top, height=height), span)
+            shape = context.moved(
+                Y_TO_Z, context.apply("taper", span, lying, bottom=bottom, top=top, height=height), span
+            )
         c, s = math.cos(0.5 * twist), math.sin(0.5 * twist)
         middle = 0.5 * (self.low + self.high)
         return context.moved(((c, s, 0, 0), (-s, c, 0, 0), (0, 0, 1, middle)), shape, span)

@@ -45,10 +45,10 @@ def uniforms_of(
     if height is None:
         fov = view.fov if view.fov is not None else values_of(setting.camera.fov, values)[0]
         half = math.tan(0.5 * fov)
-        cone = (0.0, half / rows, 1.0)
+        pixel = (0.0, half / rows, 1.0)
     else:
         half = 0.5 * height / frame.radius
-        cone = (half / rows, 0.0, 0.0)
+        pixel = (half / rows, 0.0, 0.0)
     right, upward, ahead = axes
     uniforms: dict[str, float | tuple[float, ...]] = {
         "eye": own_eye,
@@ -56,7 +56,7 @@ def uniforms_of(
         "axis_y": tuple(half * v for v in upward),
         "axis_z": ahead,
         "window": (float(width), float(rows), *jitter),
-        "cone": cone,
+        "pixel": pixel,
     }
     for param in scene.params:
         value = values[param.name]

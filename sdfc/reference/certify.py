@@ -220,6 +220,7 @@ def _advance_once(
     slab = some.evaluator.along_ray(some.o, some.d, a, b, some.params)
     lo, _ = level.bounds(slab.lo, slab.hi)
     fall, rise = level.slopes(slab.slope_lo, slab.slope_hi)
+    lo = _past_jumps(some, level, a, b, lo, fall)
     with np.errstate(all="ignore"):
         proved = np.where(fall >= 0.0, np.where(v > 0.0, np.inf, 0.0), v / -fall) * (1.0 - 1e-15)
         if rays.rate is not None:
@@ -243,6 +244,18 @@ def _advance_once(
     step = some.some(moved)
     value[active[moved]], _ = level.bounds(*step.evaluator.at(step.o, step.d, reached[moved], step.params))
     return active[go]
+
+
+def _past_jumps(rays: _Rays, level: _Level, a: Array, b: Array, lo: Array, fall: Array) -> Array:
+    """A better lower bound over [a, b] where the distance may jump there: that of both sides of the jump."""
+    jumping = np.flatnonzero((lo <= 0.0) & np.isneginf(fall))
+    if jumping.size == 0:
+        return lo
+    some = rays.some(jumping)
+    sides, _ = level.bounds(*some.evaluator.across_jumps(some.o, some.d, a[jumping], b[jumping], some.params))
+    result = lo.copy()
+    result[jumping] = np.maximum(lo[jumping], sides)
+    return result
 
 
 def _entries(rays: _Rays, start: Array, end: Array, thin: float) -> _Entries:

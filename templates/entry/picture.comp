@@ -10,5 +10,5 @@ void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(at, ivec2(window.xy)))) return;
     prepare();
-    imageStore(picture, at, vec4(encode_srgb(tone_map(radiance(vec2(at) + 0.5).rgb)), 1.0));
+    imageStore(picture, at, vec4(encode_srgb(tone_map(radiance().rgb)), 1.0));
 }

@@ -7,5 +7,5 @@ layout(location = 0) out vec4 color_out;  // sRGB
 
 void main() {
     prepare();
-    color_out = vec4(encode_srgb(tone_map(radiance(gl_FragCoord.xy).rgb)), 1.0);
+    color_out = vec4(encode_srgb(tone_map(radiance().rgb)), 1.0);
 }

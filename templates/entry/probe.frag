@@ -9,7 +9,7 @@ layout(location = 3) out vec4 direction_out;
 void main() {
     prepare();
     vec3 o, d;
-    camera_ray(gl_FragCoord.xy, o, d);
+    camera_ray(o, d);
     travelled = rebase(o, d);
     float t = trace(o, d, -travelled, FAR);
     bool hit = t < FAR;

@@ -7,5 +7,5 @@ layout(location = 0) out vec4 radiance_out;  // linear radiance, and whether som
 
 void main() {
     prepare();
-    radiance_out = radiance(gl_FragCoord.xy);
+    radiance_out = radiance();
 }

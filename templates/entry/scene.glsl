@@ -2,12 +2,8 @@
 // {{ line }}
 {% endfor %}
 
-uniform vec3 eye;     // in the scene's own coordinates: (p - centre) / radius
-uniform vec3 axis_x;  // to the right edge of the picture, to its upper edge, and ahead
-uniform vec3 axis_y;
-uniform vec3 axis_z;
-uniform vec4 window;  // width, height, and the sample's place in its pixel
-uniform vec3 cone;    // half a pixel: size at the eye, growth with the distance; 1 in perspective, 0 in parallel
+{% include camera_template %}
+
 {% for param in params %}
 uniform {{ param.type }} {{ param.uniform }};  // {{ param.note }}
 {% endfor %}
@@ -45,7 +41,7 @@ void prepare() {
 {% include "lib/distance.glsl" %}
 
 {% endif %}
-{% include "lib/camera.glsl" %}
+{% include "lib/rebase.glsl" %}
 
 {{ functions }}
 {% if map %}

@@ -33,9 +33,9 @@ float openness(vec3 p, vec3 normal) {
 }
 
 // One loop, one call of trace: the ray of the eye first, then one to each light.
-vec4 radiance(vec2 pixel) {
+vec4 radiance() {
     vec3 o, d;
-    camera_ray(pixel, o, d);
+    camera_ray(o, d);
     travelled = rebase(o, d);
     float start = -travelled, limit = FAR;
     vec3 view = -d, p = vec3(0.0), normal = vec3(0.0), toward = vec3(0.0), irradiance = vec3(0.0), seen = vec3(0.0);

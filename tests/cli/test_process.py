@@ -1,0 +1,97 @@
+"""The command as a process: pipes, signals, starting."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+COMMAND = [sys.executable, "-m", "sdfc"]
+SLOW = ("--size", "1600x1200", "--samples", "5000")
+SCENE = "scene { sphere(0.5) - box(size: [0.2, 2, 0.2]) }\n"
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    """A scene's file."""
+    path = tmp_path / "s.sdf"
+    path.write_text(SCENE)
+    return path
+
+
+def run(*arguments: str | Path, stdin: str = "") -> subprocess.CompletedProcess[str]:
+    return subprocess.run([*COMMAND, *map(str, arguments)], input=stdin, capture_output=True, text=True, timeout=60)
+
+
+def test_the_version_imports_neither_numpy_nor_opengl_nor_grammars() -> None:
+    loaded = "import sys; from sdfc.cli.verbs import command; print(*[m for m in {} if m in sys.modules])".format(
+        ("numpy", "moderngl", "lark", "jinja2", "sdfc.pipeline", "sdfc.api", "sdfc.cli.render")
+    )
+    done = subprocess.run([sys.executable, "-c", loaded], capture_output=True, text=True, timeout=60)
+    assert done.stdout.strip() == ""
+    assert run("--version").stdout == f"sdfc {_version()}\n"
+
+
+def _version() -> str:
+    import sdfc
+
+    return sdfc.__version__
+
+
+def test_emitting_opens_no_device(scene: Path) -> None:
+    script = (
+        "import sys; from sdfc.api import compile; compile(sys.argv[1]).glsl();"
+        " print(*[m for m in ('moderngl', 'sdfc.gpu.device') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", script, str(scene)], capture_output=True, text=True, timeout=60)
+    assert (done.stdout.strip(), done.stderr) == ("", "")
+
+
+def test_a_reader_that_leaves_is_no_failure(scene: Path) -> None:
+    command = f"{' '.join(COMMAND)} check {scene} --show glsl | head -1; echo ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=60)
+    assert done.stdout == "#version 450 core\n0\n"
+    assert done.stderr == ""
+
+
+@pytest.mark.gpu
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_stopped_while_rendering_it_leaves_nothing(scene: Path, gl: None, number: signal.Signals, code: int) -> None:
+    arguments = [*COMMAND, "render", str(scene), "-o", str(scene.with_name("out.png")), *SLOW]
+    process = subprocess.Popen(arguments, stderr=subprocess.PIPE, text=True)
+    time.sleep(1.5)
+    assert process.poll() is None, "it is still rendering"
+    process.send_signal(number)
+    _, told = process.communicate(timeout=20)
+    assert process.returncode == code
+    assert "Traceback" not in told
+    assert os.listdir(scene.parent) == ["s.sdf"]
+
+
+@pytest.mark.gpu
+def test_no_progress_in_a_pipe(scene: Path, gl: None) -> None:
+    done = run("render", scene, "-o", scene.with_name("out.png"), "--size", "400x300", "--samples", "60")
+    assert (done.returncode, done.stderr, done.stdout) == (0, "", "")
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_a_folder_without_permission(scene: Path) -> None:
+    scene.parent.chmod(0o555)
+    try:
+        done = run("render", scene, "-o", scene.with_name("out.png"))
+    finally:
+        scene.parent.chmod(0o755)
+    assert done.returncode == 2
+    assert done.stderr == f"error: cannot write '{scene.with_name('out.png')}': permission denied\n"
+
+
+def test_completion_completes_verbs_and_options(scene: Path) -> None:
+    environment = {**os.environ, "_SDFC_COMPLETE": "bash_complete", "COMP_WORDS": "sdfc em", "COMP_CWORD": "1"}
+    script = "from sdfc.cli import main; main()"
+    done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=60)
+    assert done.stdout.split() == ["plain,emit-glsl"]
