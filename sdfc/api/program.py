@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
@@ -95,7 +95,7 @@ class Program:
         shot = Shot(self.compiled(tracer), camera or View(), values, size)
         renderer = self._renderer(backend, note)
         passes = samples + bool(wanted)
-        colour = _accumulated(renderer, shot, samples, _part(progress, 0, passes))
+        colour = _accumulated(renderer, shot, [_part(progress, sample, passes) for sample in range(samples)])
         kept = _aovs(renderer, shot, wanted, _part(progress, samples, passes)) if wanted else {}
         return Image(colour, kept, tuple(shot.compiled.materials), renderer.name)
 
@@ -150,17 +150,16 @@ def _close_all(renderers: dict[str, Renderer]) -> None:
         renderers.popitem()[1].close()
 
 
-def _accumulated(renderer: Renderer, shot: Shot, samples: int, progress: Progress | None) -> Array:
-    """The mean of the samples' radiance, float32 (height, width, 3)."""
+def _accumulated(renderer: Renderer, shot: Shot, parts: Sequence[Progress | None]) -> Array:
+    """The mean radiance of one sample for each part of the progress, float32 (height, width, 3)."""
     import numpy as np
 
     total = np.zeros((shot.size[1], shot.size[0], 3))
-    for sample in range(samples):
-        part = _part(progress, sample, samples)
+    for sample, part in enumerate(parts):
         total += renderer.radiance(shot, sample, part)[..., :3]
     if not np.isfinite(total).any():
         raise DeviceError(f"{renderer.name} drew nothing but NaN")
-    return (total / samples).astype(np.float32)
+    return (total / len(parts)).astype(np.float32)
 
 
 def _aovs(renderer: Renderer, shot: Shot, wanted: tuple[str, ...], progress: Progress | None) -> dict[str, Array]:

@@ -72,7 +72,7 @@ class Lipschitz:
         own = self._bounds.box(shape).meet(domain)
         graph = _graph_of(shape)
         p = graph.input("p", Type.VEC3 if shape.dimension == 3 else Type.VEC2)
-        bound = gradient_bound(lower(shape, p), own.lo, own.hi) if not own.is_empty else 1.0
+        bound = gradient_bound(lower(shape, p), own.lo, own.hi, self._ranges.of) if not own.is_empty else 1.0
         if not math.isfinite(bound):
             raise scene_error(
                 f"no bound of the slope of '{shape.definition.name}' could be found"

@@ -102,7 +102,7 @@ class FieldGraph:
 
     def _intern(self, op: Op, type_: Type, args: tuple[Expr, ...], value: Value) -> Expr:
         # repr keeps -0.0 and 0.0 apart, and makes NaN equal to itself
-        key = (op, type_, tuple(a.id for a in args), repr(value))
+        key = (op, type_, tuple([a.id for a in args]), repr(value) if op is Op.CONST else value)
         node = self._nodes.get(key)
         if node is None:
             node = self._nodes[key] = Expr(self, len(self._nodes), op, type_, args, value)
@@ -132,15 +132,12 @@ class FieldGraph:
 
     def add(self, op: Op, *args: Expr, value: Value = None) -> Expr:
         """The node for `op(args)`, folded or simplified where that is exact."""
-        if not all(a.op is Op.CONST for a in args):
-            simple = simplify(self, op, args, value)
-            if simple is not None:
-                return simple
+        for argument in args:
+            if argument.op is not Op.CONST:
+                simple = simplify(self, op, args, value)
+                return simple or self._intern(op, _result_type(op, args, value), args, value)
         type_ = _result_type(op, args, value)
-        if args and all(a.op is Op.CONST for a in args):
-            folded = fold(op, [a.numbers for a in args], type_.size, value)
-            return self._intern(Op.CONST, type_, (), folded)
-        return self._intern(op, type_, args, value)
+        return self._intern(Op.CONST, type_, (), fold(op, [a.numbers for a in args], type_.size, value))
 
     # GLSL's vocabulary, for code that builds formulas
 
@@ -188,12 +185,11 @@ def _result_type(op: Op, args: Sequence[Expr], value: Value) -> Type:
             return Type(len(value))
         case Op.DOT | Op.LENGTH:
             return Type.FLOAT
-        case Op.SELECT:
-            return max((args[1].type, args[2].type), key=lambda t: t.value)
         case _ if op in COMPARISON or op in LOGIC:
             return Type.BOOL
         case _:
-            return max((a.type for a in args), key=lambda t: t.value)
+            first, last = args[-2:] if len(args) > 1 else (args[0], args[0])
+            return first.type if first.type.size >= last.type.size else last.type
 
 
 def arguments(node: Expr) -> Sequence[Expr]:

@@ -1,8 +1,8 @@
 """Both sides of a jump: how a segment across a cell border of a repetition is still proved empty.
 
-Where floor, round, sign, mod, a comparison or atan2's cut is undecided over a segment, its interval is the hull of both
-sides, and holds everything between: useless, however short the segment is. Here each undecided operation takes one side;
-the caller runs through the combinations of sides and unites the results. What lies on a side is as tight as ever.
+Where floor, round, sign, mod, a comparison or atan2's cut is undecided over a segment, its interval is the hull of
+both sides, and holds everything between: useless, however short the segment is. Here each undecided operation takes one
+side; the caller runs through the combinations of sides and unites the results. What lies on a side is as tight as ever.
 
 At the jump itself sign is 0, which is neither side: the union is right but for isolated points.
 """
@@ -20,66 +20,64 @@ from sdfc.field.graph import Op
 from sdfc.field.interval_rules import Interval
 
 Mask: TypeAlias = NDArray[np.bool_]
-# (arguments, the plain result) -> (the lower side, the upper side, undecided, with more than two sides)
-SidesRule: TypeAlias = Callable[[Sequence[Interval], Interval], tuple[Interval, Interval, Mask, Mask]]
+# (arguments, the plain result) -> (the lower side, the upper side, where it is one of these two)
+SidesRule: TypeAlias = Callable[[Sequence[Interval], Interval], tuple[Interval, Interval, Mask]]
 
 MAX_JUMPS = 3  # undecided operations at once that are run through, so 8 combinations
 
 
 class Sides:
-    """One combination: the i-th undecided operation of each point takes its upper side where bit i is set."""
+    """One combination: the i-th undecided operation of each point takes its upper side where bit i is set.
+
+    An operation with more than two sides, and what is undecided after MAX_JUMPS others, keeps the hull.
+    """
 
     def __init__(self, combination: int, points: int) -> None:
         self._combination = combination
-        self.jumps = np.zeros(points, np.int64)  # undecided operations so far; above MAX_JUMPS: too many
+        self.jumps = np.zeros(points, np.int64)  # operations of each point that took a side so far
 
     def take(self, op: Op, args: Sequence[Interval], result: Interval) -> Interval:
         """The side of `result` that this combination takes."""
-        lower, upper, undecided, many = JUMPS[op](args, result)
+        lower, upper, undecided = JUMPS[op](args, result)
         if not undecided.any():
             return result
         # components one by one: each may jump on its own
-        rows = np.atleast_2d(np.where(many, MAX_JUMPS + 1, undecided))
+        rows = np.atleast_2d(undecided).astype(np.int64)
         position = self.jumps + np.cumsum(rows, axis=0) - rows
-        up = ((self._combination >> np.minimum(position, MAX_JUMPS)) & 1).astype(bool).reshape(-1, self.jumps.size)
+        taken = (rows > 0) & (position < MAX_JUMPS)
+        up = ((self._combination >> np.minimum(position, MAX_JUMPS)) & 1) > 0
+        self.jumps = self.jumps + taken.sum(axis=0)
         if undecided.ndim == 1:
-            up = up[0]
-        self.jumps = self.jumps + rows.sum(axis=0)
-        lo = np.where(undecided, np.where(up, upper.lo, lower.lo), result.lo)
-        hi = np.where(undecided, np.where(up, upper.hi, lower.hi), result.hi)
-        return Interval(lo, hi)
+            taken, up = taken[0], up[0]
+        lo = np.where(taken, np.where(up, upper.lo, lower.lo), result.lo)
+        hi = np.where(taken, np.where(up, upper.hi, lower.hi), result.hi)
+        # either side is within the plain result, which may know more: mod's range, the half turn
+        return Interval(np.maximum(lo, result.lo), np.minimum(hi, result.hi))
 
 
-def _steps(args: Sequence[Interval], result: Interval) -> tuple[Interval, Interval, Mask, Mask]:
+def _steps(args: Sequence[Interval], result: Interval) -> tuple[Interval, Interval, Mask]:
     """floor, round: whole numbers."""
-    undecided = ~(result.lo == result.hi)
-    many = undecided & ~(result.hi - result.lo == 1.0)
-    return Interval(result.lo, result.lo), Interval(result.hi, result.hi), undecided, many
+    return Interval(result.lo, result.lo), Interval(result.hi, result.hi), result.hi - result.lo == 1.0
 
 
-def _ends(args: Sequence[Interval], result: Interval) -> tuple[Interval, Interval, Mask, Mask]:
+def _ends(args: Sequence[Interval], result: Interval) -> tuple[Interval, Interval, Mask]:
     """sign and comparisons: an end or the other."""
-    undecided = ~(result.lo == result.hi)
-    return Interval(result.lo, result.lo), Interval(result.hi, result.hi), undecided, np.zeros_like(undecided)
+    return Interval(result.lo, result.lo), Interval(result.hi, result.hi), result.lo < result.hi
 
 
-def _modulo(args: Sequence[Interval], result: Interval) -> tuple[Interval, Interval, Mask, Mask]:
-    """Two neighbouring quotients; either way the result is within the divisor's range, which `result` knows."""
-    quotient, decided = rules.floor_quotient(args[0], args[1])
-    sides = []
-    for end in quotient:
-        side = rules.subtracted(args[0], rules.multiplied(args[1], Interval(end, end)))
-        sides.append(Interval(np.maximum(side.lo, result.lo), np.minimum(side.hi, result.hi)))
-    return sides[0], sides[1], ~decided, ~decided & ~(quotient.hi - quotient.lo == 1.0)
+def _modulo(args: Sequence[Interval], result: Interval) -> tuple[Interval, Interval, Mask]:
+    """Two neighbouring quotients."""
+    quotient, _ = rules.floor_quotient(args[0], args[1])
+    lower, upper = (rules.subtracted(args[0], rules.multiplied(args[1], Interval(end, end))) for end in quotient)
+    return lower, upper, quotient.hi - quotient.lo == 1.0
 
 
-def _arc_tangent2(args: Sequence[Interval], result: Interval) -> tuple[Interval, Interval, Mask, Mask]:
+def _arc_tangent2(args: Sequence[Interval], result: Interval) -> tuple[Interval, Interval, Mask]:
     """Below and above the cut; at the origin every angle is possible."""
     y, x = args
-    cut = rules.on_branch_cut(y, x)
     below = rules.corner_angles(Interval(y.lo, np.full_like(y.hi, -0.0)), x)
     above = rules.corner_angles(Interval(np.zeros_like(y.lo), y.hi), x)
-    return below, above, cut, cut & ~(x.hi < 0.0)
+    return below, above, rules.on_branch_cut(y, x) & (x.hi < 0.0)
 
 
 JUMPS: dict[Op, SidesRule] = {

@@ -4,9 +4,9 @@ An `Interval` is a pair of arrays (lo, hi): a FLOAT's are (n,) or (1,), a VECk's
 A boolean is an interval of 0 and 1: (1, 1) certainly true, (0, 0) certainly false, (0, 1) undecided.
 A NaN end point stands for "unbounded on this side" until `settled` turns it into an infinity; every rule propagates it.
 
-Rounding. A correctly rounded operation is within half an ulp, so multiplying the end points by 1 -/+ 2^-52 (at least one
-ulp) and subtracting the least normal number where a product can underflow is outward; sums cannot underflow. It costs a
-tenth of np.nextafter. Library functions get 16 ulps: NumPy's vector kernels promise at most 4.
+Rounding. A correctly rounded operation is within half an ulp, so multiplying the end points by 1 -/+ 2^-52 (at least
+one ulp) and subtracting the least normal number where a product can underflow is outward; sums cannot underflow. It
+costs a tenth of np.nextafter. Library functions get 16 ulps: NumPy's vector kernels promise at most 4.
 """
 
 from __future__ import annotations
@@ -108,10 +108,13 @@ def multiplied(a: Interval, b: Interval) -> Interval:
 
 
 def _product_with_infinities(a: Interval, b: Interval) -> tuple[Array, Array]:
-    products = [np.nan_to_num(x * y, nan=0.0, posinf=np.inf, neginf=-np.inf) for x in a for y in b]
-    lo = np.minimum(np.minimum(products[0], products[1]), np.minimum(products[2], products[3]))
-    hi = np.maximum(np.maximum(products[0], products[1]), np.maximum(products[2], products[3]))
-    return lo, hi
+    return _extremes([np.nan_to_num(x * y, nan=0.0, posinf=np.inf, neginf=-np.inf) for x in a for y in b])
+
+
+def _extremes(corners: Sequence[Array]) -> tuple[Array, Array]:
+    """The least and the greatest of a box's four corner values."""
+    a, b, c, d = corners
+    return np.minimum(np.minimum(a, b), np.minimum(c, d)), np.maximum(np.maximum(a, b), np.maximum(c, d))
 
 
 def squared(a: Interval) -> Interval:
@@ -230,9 +233,7 @@ def arc_cosine(a: Interval) -> Interval:
 
 def corner_angles(y: Interval, x: Interval) -> Interval:
     """atan2 over a box that does not cross the branch cut: its corners are extreme."""
-    corners = [np.arctan2(b, a) for b in y for a in x]
-    lo = np.minimum(np.minimum(corners[0], corners[1]), np.minimum(corners[2], corners[3]))
-    hi = np.maximum(np.maximum(corners[0], corners[1]), np.maximum(corners[2], corners[3]))
+    lo, hi = _extremes([np.arctan2(b, a) for b in y for a in x])
     return Interval(down(lo, LIBRARY_ULPS) - LEAST, up(hi, LIBRARY_ULPS) + LEAST)
 
 
@@ -289,9 +290,7 @@ def power(a: Interval, b: Interval) -> Interval:
 
 def _corner_powers(a: Interval, b: Interval) -> Interval:
     """pow over a >= 0: monotone in each variable, so the corners are extreme."""
-    corners = [np.power(x, y) for x in a for y in b]
-    lo = np.minimum(np.minimum(corners[0], corners[1]), np.minimum(corners[2], corners[3]))
-    hi = np.maximum(np.maximum(corners[0], corners[1]), np.maximum(corners[2], corners[3]))
+    lo, hi = _extremes([np.power(x, y) for x in a for y in b])
     return Interval(np.maximum(down(lo, LIBRARY_ULPS) - LEAST, 0.0), up(hi, LIBRARY_ULPS) + LEAST)
 
 

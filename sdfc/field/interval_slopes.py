@@ -1,4 +1,4 @@
-"""Interval rules for derivatives: [f'] over a segment, given [value] and [derivative] of the arguments over the segment.
+"""Interval rules for derivatives: [f'] over a segment, given [value] and [derivative] of the arguments over it.
 
 f' is Clarke's generalised derivative: the hull of both sides at a kink (abs, min, max), so that the mean value theorem
 holds. Where an operation may jump (floor, round, sign, mod, select, atan2's cut) the slope is [-inf, inf].

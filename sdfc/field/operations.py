@@ -12,13 +12,18 @@ class Type(Enum):
     VEC3 = 3
     VEC4 = 4
 
-    @property
-    def size(self) -> int:
-        return max(1, self.value)
+    size: int
+
+    def __init__(self, components: int) -> None:
+        self.size = max(1, components)
+
+    __hash__ = object.__hash__  # members are single; Enum's own is slow, and nodes are looked up by it
 
 
 class Op(Enum):
     """Every operation of the field graph. Each interpretation has a row for every one of them (tested)."""
+
+    __hash__ = object.__hash__
 
     # leaves; Expr.value says which
     CONST = "const"  # value: tuple of floats, or (True,)/(False,) for a boolean

@@ -94,8 +94,9 @@ def literal(x: float) -> str:
         raise InternalError(f"{x} cannot be written as a GLSL number")
     if rounded == 0.0:
         return "0.0"
-    # decimals of 6 digits are all different float32s, so the first that fits is the shortest
-    digits = next(text for text in (f"{rounded:.{n}g}" for n in range(6, 10)) if _float32(text) == rounded)
+    # decimals of 6 digits are different float32s (but for the denormal ones), so the first that fits is the shortest
+    fewest = 6 if abs(rounded) > 1.2e-38 else 1
+    digits = next(text for text in (f"{rounded:.{n}g}" for n in range(fewest, 10)) if _float32(text) == rounded)
     if 1e-4 <= abs(rounded) < 1e9:
         return repr(float(digits))
     mantissa, _, exponent = digits.partition("e")

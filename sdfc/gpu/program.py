@@ -30,6 +30,8 @@ _COMPLAINT_PATTERNS = (
 _CONTEXT_LINES = 3
 _MOST_SHOWN = 4  # one mistake in a template often raises a hundred complaints
 
+_PLACE = re.compile(r"// (\S+:\d+:\d+)\s*$")  # how the emitter says what a line was made from
+
 _INTEGER_FORMATS = frozenset("iu")
 
 
@@ -71,7 +73,9 @@ def _excerpt(complaint: Complaint, text: str) -> str:
         f"{'>' if number == complaint.line else ' '}{number:5d} | {lines[number - 1][:160]}"
         for number in range(first, last + 1)
     ]
-    return "\n".join([f"line {complaint.line}: {complaint.message}", *numbered])
+    place = _PLACE.search(lines[complaint.line - 1])
+    made_from = f" (made from {place[1]})" if place else ""
+    return "\n".join([f"line {complaint.line}{made_from}: {complaint.message}", *numbered])
 
 
 class FragmentProgram:

@@ -32,7 +32,7 @@ class Generator:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Spanned:
-    """Made when asked for. May raise RefusalError."""
+    """Made when asked for. May refuse."""
 
     make: Callable[[], Sequence[Generator]] = field(repr=False)
 

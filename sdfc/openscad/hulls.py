@@ -6,12 +6,13 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
-from sdfc.openscad import plane, polytope, rounded
+from sdfc.openscad import outline, plane, polytope, rounded
 from sdfc.openscad.generators import Generator, Spanned, frame, generators, moved_point
 from sdfc.openscad.invocation import Invocation
 from sdfc.openscad.lathe import Lathe
 from sdfc.openscad.outline import Point2
 from sdfc.openscad.part import Flat, Part, Solid
+from sdfc.openscad.plane import Disc, Joined, Plane, Polygon
 from sdfc.openscad.polytope import Point
 from sdfc.openscad.refusal import RefusalError
 from sdfc.openscad.solids import points_hull
@@ -94,31 +95,34 @@ def _tower(m: Invocation, local: Sequence[tuple[Point, Generator]], near: float)
     """The same discs and points in two parallel planes: their hull in the plane, extruded."""
     if any(g.radius and g.axis is None for _, g in local):
         raise RefusalError("the hull of balls and discs has no exact form", GENERAL)
-    heights = sorted(p[2] for p, _ in local)
-    low, high = heights[0], heights[-1]
-    if any(min(z - low, high - z) > near for z in heights):
-        raise RefusalError("the hull of discs at three heights has no exact form", GENERAL)
+    low, high = min(p[2] for p, _ in local), max(p[2] for p, _ in local)
     if high - low <= near:
         return None
-    levels = [sorted((p[0], p[1], g.radius) for p, g in local if abs(p[2] - z) <= near) for z in (low, high)]
-    discs = [plane.hull_of_discs([((x, y), r) for x, y, r in level]) for level in levels]
-    if not _is_same(discs[0], discs[1], near):
+    flat = plane.hull_of_discs([((p[0], p[1]), g.radius) for p, g in local])
+    ends = [[((p[0], p[1]), g.radius) for p, g in local if abs(p[2] - z) <= near] for z in (low, high)]
+    if flat is None or not all(_covers(plane.hull_of_discs(end), flat, near) for end in ends):
         raise RefusalError("the hull of different discs at two heights has no exact form", GENERAL)
-    assert discs[0] is not None
-    return plane.fold(discs[0], Tower(m.context, m.span, low, high, 1.0, 1.0).solid)
+    return plane.fold(flat, Tower(m.context, m.span, low, high, 1.0, 1.0).solid)
 
 
-def _is_same(a: plane.Plane | None, b: plane.Plane | None, near: float) -> bool:
-    """Whether two convex shapes reach equally far in every direction that matters: by their corners and discs."""
-    if a is None or b is None:
+def _covers(part: Plane | None, whole: Plane, near: float) -> bool:
+    """Whether a hull of discs has all of another: its discs, and in their polygon the other's corners."""
+    if part is None:
         return False
-    spans = [_support(plane.spanning_discs(s)) for s in (a, b)]
-    return all(abs(x - y) <= near for x, y in zip(*spans, strict=True))
+    discs, sides = _discs_and_sides(part)
+    for (x, y), radius in plane.spanning_discs(whole):
+        if radius and not any(math.dist(c, (x, y)) + abs(r - radius) <= near for c, r in discs):
+            return False
+        in_polygon = bool(sides) and all(a * x + b * y <= d + near for (a, b), d in sides)
+        if not radius and not in_polygon and not any(math.dist(c, (x, y)) <= r + near for c, r in discs):
+            return False
+    return True
 
 
-def _support(discs: Sequence[tuple[Point2, float]]) -> list[float]:
-    angles = [math.tau * i / 64 for i in range(64)]
-    return [max(math.cos(t) * x + math.sin(t) * y + r for (x, y), r in discs) for t in angles]
+def _discs_and_sides(root: Plane) -> tuple[list[tuple[Point2, float]], list[outline.Edge]]:
+    parts = root.children if isinstance(root, Joined) else (root,)
+    discs = [(part.center, part.radius or 0.0) for part in parts if isinstance(part, Disc)]
+    return discs, [side for part in parts if isinstance(part, Polygon) for side in outline.edges(part.points)]
 
 
 def minkowski(m: Invocation) -> Part | None:

@@ -123,7 +123,7 @@ def contains(points: Sequence[Point2], p: Point2) -> bool:
 
 
 def mitred(points: Sequence[Point2], amount: float) -> tuple[Point2, ...]:
-    """Every side moved out by `amount`, corners kept sharp. Raises RefusalError where sides would vanish or collide."""
+    """Every side moved out by `amount`, corners kept sharp. Refuses where sides would vanish or collide."""
     ordered = tuple(points) if area(points) > 0.0 else tuple(reversed(points))
     n = len(ordered)
     corners = [p for i, p in enumerate(ordered) if _bend(ordered[i - 1], p, ordered[(i + 1) % n])]

@@ -169,7 +169,7 @@ def moved(root: Plane, move: Map2) -> Plane:
 def grown(root: Plane, amount: float) -> Plane | None:
     """`offset(r = amount)`: all points within `amount`, or what is farther inside than `-amount`; None for nothing.
 
-    Growing goes into a union, and shrinking into an intersection; the other way round corners would be wrong: RefusalError.
+    Growing goes into a union, and shrinking into an intersection; the other way round corners would be wrong.
     """
 
     def image(node: Plane, level: int, parts: list[Plane | None]) -> Plane | None:
@@ -216,7 +216,7 @@ def _grown_polygon(polygon: Polygon, amount: float) -> Plane | None:
 
 
 def mitred(root: Plane, amount: float) -> Plane | None:
-    """`offset(delta = amount)`: polygons with sharp corners, and discs. Raises RefusalError for what is not one of these."""
+    """`offset(delta = amount)`: polygons with sharp corners, and discs. Refuses for what is not one of these."""
     match root:
         case Polygon():
             if outline.is_convex(root.points) and amount < 0.0:
@@ -310,7 +310,7 @@ def is_tight(root: Plane) -> bool:
 
 
 def spanning_discs(root: Plane) -> list[tuple[Point2, float]]:
-    """Points (radius 0) and discs whose convex hull is that of the shape. Raises RefusalError where that is not known."""
+    """Points (radius 0) and discs whose convex hull is that of the shape. Refuses where that is not known."""
 
     def discs(node: Plane, _: int, parts: list[list[tuple[Point2, float]]]) -> list[tuple[Point2, float]]:
         match node:

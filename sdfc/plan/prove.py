@@ -88,6 +88,7 @@ class Prover:
         self._convex: frozenset[int] = frozenset()
         self._boxes = 0
         self._leaves: list[Leaf] = []
+        self._interval_counts: dict[int, int] = {}
 
     @property
     def parts(self) -> tuple[Part, ...]:
@@ -203,6 +204,13 @@ class Prover:
         return Part(name, leaf.shape, inverse, stretch, own_grow, leaf.material, box, leaf.shape.span)
 
     def _intervals(self, shape: Apply) -> int:
+        """How many intervals the primitive's ray claim gives: the same for all uses of the definition."""
+        key = id(shape.definition)
+        if key not in self._interval_counts:
+            self._interval_counts[key] = self._counted(shape)
+        return self._interval_counts[key]
+
+    def _counted(self, shape: Apply) -> int:
         o, d = self._values.input("o"), self._values.input("d")
         return len(lower_ray(shape, o, d, self._values.constant(0.0)))
 

@@ -1,12 +1,14 @@
 """The certified first hit of a ray: interval arithmetic in float64, no distance property, no step limit that guesses.
 
-A ray is o + t d, with o and d the float64 values of the float32 numbers that the tracer under test gets. The search keeps a
-point a such that distance > 0 is proved on [start, a], and moves it by
+A ray is o + t d, with o and d the float64 values of the float32 numbers that the tracer under test gets. The search
+keeps a point a such that distance > 0 is proved on [start, a], and moves it by
 
 * the natural interval of the distance on [a, a + w] (all of it is empty when the lower end is positive),
 * the mean value form: with distance >= v at a and slope >= s < 0 on [a, a + w], [a, a + v / -s) is empty
   (Galin et al. 2020; Aydinlilar and Zanni 2023; with the upper slope too it is the interval Newton method, Moore 1966),
-* where a Lipschitz constant L is proved: [a, a + v / (L |d|)) is empty (Hart 1996).
+* where a Lipschitz constant L is proved: [a, a + v / (L |d|)) is empty (Hart 1996),
+* where the distance may jump (a cell border of a repetition): the natural intervals of both sides of the jump. An
+  isolated point at the jump itself is left out: a single point is no run of solid.
 """
 
 from __future__ import annotations
@@ -44,11 +46,12 @@ class Certificate:
 
     status     Status per ray. HIT: a run of solid begins within [t_lo, t_hi]. MISS: there is no run up to t_end.
                AMBIGUOUS: interval arithmetic cannot say (a tangency, a ray within a face).
-    t_lo, t_hi HIT: the bracket of the entry: distance > 0 is proved before t_lo (films apart) and distance <= 0 at t_hi.
+    t_lo, t_hi HIT: the bracket of the entry: distance > 0 is proved before t_lo (films apart), distance < 0 at t_hi.
                MISS: both inf. AMBIGUOUS: t_lo ends what is proved empty.
     clearance  A proved lower bound of the distance along a MISS ray; 0 for the others and where a film was passed.
-    t_early    The first t with distance <= tolerance (inf: none): no tracer that stops within tolerance stops before it.
-    t_late     The first t with distance < -tolerance (inf: none): no such tracer passes it.
+    t_early    The first t with distance <= tolerance (inf: none): who stops within tolerance stops no earlier.
+    t_late     The first t with distance < -tolerance (inf: none): who stops within tolerance does not pass it.
+               Without a tolerance these two are t_lo and t_hi.
     contested  The ray's answer may depend on an error of `tolerance` in the distance: see `first_roots`.
     """
 
@@ -122,6 +125,7 @@ class _Advance:
         self.exhausted = np.zeros(self.reached.shape, bool)
 
 
+@np.errstate(all="ignore")
 def first_roots(
     distance: Expr,
     o: Array,
@@ -221,15 +225,16 @@ def _advance_once(
     lo, _ = level.bounds(slab.lo, slab.hi)
     fall, rise = level.slopes(slab.slope_lo, slab.slope_hi)
     lo = _past_jumps(some, level, a, b, lo, fall)
-    with np.errstate(all="ignore"):
-        proved = np.where(fall >= 0.0, np.where(v > 0.0, np.inf, 0.0), v / -fall) * (1.0 - 1e-15)
-        if rays.rate is not None:
-            proved = np.maximum(proved, v / (rays.rate * some.speed) * (1.0 - 1e-15))
-        empty = (lo > 0.0) | (a + proved * (1.0 - 1e-15) >= b)
-        reached = np.where(empty, b, np.minimum(a + proved, b))
-        # where it falls all along, the root (if any) is before a + value / -rise
-        newton = np.where(rise < 0.0, 2.0 * (v / -rise - proved), np.inf)
-        shorter = np.minimum(np.maximum(2.0 * proved, w / 8.0), np.maximum(newton, resolution / 2.0))
+    proved = np.where(fall >= 0.0, np.where(v > 0.0, np.inf, 0.0), v / -fall)
+    if rays.rate is not None:
+        proved = np.maximum(proved, v / (rays.rate * some.speed))
+    proved *= 1.0 - 1e-15  # for the roundings of the quotients; nextafter is for the sum's
+    proved_end = np.where(np.isinf(proved), np.inf, np.nextafter(a + proved, a))
+    empty = (lo > 0.0) | (proved_end >= b)
+    reached = np.where(empty, b, np.minimum(proved_end, b))
+    # where it falls all along, the root (if any) is before a + value / -rise
+    newton = np.where(rise < 0.0, 2.0 * (v / -rise - proved), np.inf)
+    shorter = np.minimum(np.maximum(2.0 * proved, w / 8.0), np.maximum(newton, resolution / 2.0))
     bound = np.maximum(lo, np.where(empty, v + np.minimum(fall, 0.0) * (b - a), -np.inf))
     state.clearance[active] = np.minimum(
         state.clearance[active], np.where(np.isnan(bound), 0.0, np.maximum(bound, 0.0))

@@ -75,8 +75,9 @@ class Comparison:
         residual = "" if self.residual is None else f" Residual |f| {self.residual}."
         return (
             f"{sure.rays} uncontested rays, {sure.hits} hits: {sure.missed} missed, {sure.false} false, "
-            f"{sure.early} early, {sure.late} late, {self.not_finite} not finite. |dt| median / p99 / max {self.error}; in pixels "
-            f"{self.error_pixels}; in float32 ulps {self.error_ulps}.{residual} {other.rays} contested rays: "
+            f"{sure.early} early, {sure.late} late, {self.not_finite} not finite. "
+            f"|dt| median / p99 / max {self.error}; in pixels {self.error_pixels}; "
+            f"in float32 ulps {self.error_ulps}.{residual} {other.rays} contested rays: "
             f"{other.missed} missed, {other.false} false, {other.early} early, {other.late} late; "
             f"{self.ambiguous} ambiguous."
         )
@@ -101,7 +102,8 @@ def compare(
     true_hit = truth.status == Status.HIT
     both = hit & true_hit & np.isfinite(t)
     # halfway: a bracket is far narrower than a float32 ulp
-    exact = np.where(true_hit, truth.t_lo + 0.5 * (np.where(true_hit, truth.t_hi, 0.0) - truth.t_lo), 0.0)
+    lo, hi = (np.where(true_hit, end, 0.0) for end in (truth.t_lo, truth.t_hi))
+    exact = lo + 0.5 * (hi - lo)
     error = np.where(both, np.abs(np.where(both, t, 0.0) - exact), 0.0)
     ulp = _float32_ulp(np.maximum(origin_scale, exact))
     latest = np.where(np.isfinite(truth.t_late), truth.t_late, truth.t_hi)

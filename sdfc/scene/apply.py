@@ -58,8 +58,7 @@ def apply(
     values_ = _values(definition, matched, names, call.name.span)
     names.context.budget.shape(span)
     made = names.context.shapes.apply(definition, values_, parts, span)
-    if not definition.is_standard or any(isinstance(v, tuple) for v in values_):
-        _try(definition, values_, names)
+    _try(definition, values_, names)
     return made
 
 
@@ -114,7 +113,13 @@ def _check_requirements(definition: Definition, environment: dict[str, Argument]
 
 
 def _try(definition: Definition, arguments: Sequence[Argument], names: Names) -> None:
-    """Evaluates the formula once, so that what is wrong with it for just these arguments is told now."""
+    """Evaluates the formula once for each length of a list and each count, so that a wrong index is told now."""
+    pairs = list(zip(definition.values, arguments, strict=True))
+    lengths = tuple([len(a) if isinstance(a, tuple) else a for p, a in pairs if p.kind.is_list or p.kind is Kind.COUNT])
+    key = (definition, *lengths)
+    if (definition.is_standard and not lengths) or key in names.context.tried:
+        return
+    names.context.tried.add(key)
     graph = names.context.graph
     environment = {p.name: a for p, a in zip(definition.values, arguments, strict=True)}
     point = graph.input("p", Type(definition.dimension))

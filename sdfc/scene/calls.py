@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
@@ -132,8 +133,18 @@ def _instances(node: tree.Call, names: Names) -> Value:
     found: list[tuple[Value, Span]] = []
     for row in names.module.table(path.value, path.span):
         names.context.budget.step(node.span)
-        found += arithmetic.elements([body], names.within("row", row))
+        found += _instance(body, row, names)
     return combine.union(combine.flat_shapes(found), names, node.span)
+
+
+def _instance(body: tree.Element, row: Value, names: Names) -> list[tuple[Value, Span]]:
+    """What one row makes; an error says also which row it is."""
+    try:
+        return arithmetic.elements([body], names.within("row", row))
+    except SceneError as error:
+        assert isinstance(row, values.Row)
+        hint = f"in the row at {row.span}"
+        raise SceneError(*[d if d.hint else dataclasses.replace(d, hint=hint) for d in error.diagnostics]) from None
 
 
 _SPECIAL: Mapping[str, Callable[[tree.Call, Names], Value]] = MappingProxyType(

@@ -303,7 +303,7 @@ def _claims(declaration: tree.FieldDeclaration, maker: _Maker, is_standard: bool
         homogeneous="homogeneous" in found,
         lipschitz=_lipschitz(found, maker, is_standard),
         bounds=maker.bounds(bounds) if bounds else None,
-        bounds_use_level=bounds is not None and "level" in mentions((bounds.value, bounds.where)),
+        bounds_use_level=bounds is not None and "level" in mentions((bounds.value, bounds.where)).used,
         gauge=maker.gauge(found["gauge"]) if "gauge" in found else None,
         ray=maker.ray(found["ray"]) if "ray" in found else None,
         lowering=maker.lowering(found["lowering"]) if "lowering" in found else None,

@@ -55,9 +55,9 @@ def _elaborate(source: Source, place: Path | None) -> Scene:
     folder = Folder(place)
     problems = Problems()
     module = load_modules(parse(source), context, folder, problems)
-    module.declare_params(problems)
     problems.add(*recursion(module))
     problems.finish()  # beyond this, every error would be told again wherever the name is used
+    module.declare_params(problems)
     scene = _scene(module, folder, problems)
     problems.finish()
     assert scene is not None
@@ -69,6 +69,7 @@ def _scene(module: FileModule, folder: Folder, problems: Problems) -> Scene | No
     _check_declarations(module, problems)
     camera, lights, sky = _camera(module, problems), _lights(module, problems), _sky(module, problems)
     root = _root(module, problems)
+    context.budget.is_over = True
     if root is None:
         return None
     warnings = list(dict.fromkeys([*context.warnings, *unused(module)]))

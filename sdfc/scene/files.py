@@ -41,7 +41,8 @@ class Folder:
                 f"{_quoted(name)} is outside of the scene's folder", span, "a scene reads files of its own folder only"
             )
         if not exists:
-            raise scene_error(f"there is no file {_quoted(name)}", span, self._near(path))
+            what = "is a folder" if path.is_dir() else "does not exist"
+            raise scene_error(f"the file {_quoted(name)} {what}", span, None if path.is_dir() else self._near(path))
         return path
 
     def _near(self, path: Path) -> str | None:

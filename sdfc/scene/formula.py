@@ -41,6 +41,9 @@ class Outer(Protocol):
     def names(self) -> Sequence[str]:
         """All that there is, for hints."""
 
+    def step(self, span: Span) -> None:
+        """One more round of a loop, or call: raises SceneError where there are too many."""
+
 
 @dataclass(frozen=True, slots=True)
 class Helper:
@@ -61,6 +64,9 @@ class NothingOutside:
 
     def names(self) -> Sequence[str]:
         return ()
+
+    def step(self, span: Span) -> None:
+        return None
 
 
 NOTHING_OUTSIDE = NothingOutside()
@@ -281,6 +287,7 @@ def _call(node: tree.Call, scope: Scope) -> Value:
 def _helped(node: tree.Call, helper: Helper, scope: Scope) -> Value:
     """The body of a `def` with these arguments."""
     declaration, name = helper.declaration, node.name.text
+    scope.outer.step(node.span)
     if name in scope.calls:
         cycle = " → ".join([*scope.calls[scope.calls.index(name) :], name])
         raise scene_error(f"'{name}' calls itself: {cycle}", node.span, "recursion is not possible: write a loop")
@@ -369,6 +376,7 @@ def _elements(nodes: Sequence[tree.Element], scope: Scope) -> list[Value]:
     for node in nodes:
         if isinstance(node, tree.Loop):
             for item in items(evaluate(node.iterable, scope), node.iterable.span):
+                scope.outer.step(node.span)
                 values += _elements([node.body], scope.within(node.variable.text, item))
                 if len(values) > LONGEST_LOOP:
                     raise scene_error(f"loops of more than {LONGEST_LOOP} values", node.span)

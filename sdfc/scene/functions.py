@@ -114,12 +114,28 @@ class Function:
 def _each(name: str, op: Op) -> Callable[[FieldGraph, Sequence[Expr], Span], Expr]:
     def build(graph: FieldGraph, args: Sequence[Expr], span: Span) -> Expr:
         common_size(name, args, span)
-        result = args[0] if len(args) > 1 else graph.add(op, args[0])
-        for other in args[1:]:
+        return graph.add(op, *args)
+
+    return build
+
+
+def _extreme(name: str, op: Op) -> Callable[[FieldGraph, Sequence[Expr], Span], Expr]:
+    """Of any number of arguments; of one vector, its components."""
+
+    def build(graph: FieldGraph, args: Sequence[Expr], span: Span) -> Expr:
+        common_size(name, args, span)
+        parts = components(args[0]) if len(args) == 1 else args
+        result = parts[0]
+        for other in parts[1:]:
             result = graph.add(op, result, other)
         return result
 
     return build
+
+
+def components(value: Expr) -> list[Expr]:
+    """The parts of a vector; a number is its own."""
+    return [value] if value.type.value < 2 else [value[i] for i in range(value.type.size)]
 
 
 def _formula(name: str, formula: Callable[..., Expr]) -> Callable[[FieldGraph, Sequence[Expr], Span], Expr]:
@@ -198,8 +214,8 @@ FUNCTIONS: Mapping[str, Function] = MappingProxyType(
         "atan": Function(1, 2, _atan, gives_angle=True),
         "radians": Function(1, 1, _formula("radians", lambda g, x: x * (math.pi / 180)), gives_angle=True),
         "degrees": Function(1, 1, _formula("degrees", lambda g, x: x * (180 / math.pi)), takes_angle=True),
-        "min": Function(1, _MANY, _each("min", Op.MIN), keeps_unit=True),
-        "max": Function(1, _MANY, _each("max", Op.MAX), keeps_unit=True),
+        "min": Function(1, _MANY, _extreme("min", Op.MIN), keeps_unit=True),
+        "max": Function(1, _MANY, _extreme("max", Op.MAX), keeps_unit=True),
         "mod": Function(2, 2, _formula("mod", lambda g, a, b: g.add(Op.MOD, a, b)), keeps_unit=True),
         "pow": Function(2, 2, _formula("pow", lambda g, a, b: g.add(Op.POW, a, b))),
         "clamp": Function(3, 3, _formula("clamp", lambda g, x, a, b: g.clamp(x, a, b)), keeps_unit=True),
@@ -222,8 +238,10 @@ def call(name: str, graph: FieldGraph, args: Sequence[Expr], span: Span) -> Expr
     """The function `name` of FUNCTIONS or FOLDS."""
     if name in FOLDS:
         operator, start = FOLDS[name]
-        result = args[0] if args else graph.constant(start)
-        for value in args[1:]:
+        parts = components(args[0]) if len(args) == 1 else args
+        common_size(name, parts, span)
+        result = parts[0] if parts else graph.constant(start)
+        for value in parts[1:]:
             result = arithmetic(operator, result, value, span)
         return result
     row = FUNCTIONS[name]

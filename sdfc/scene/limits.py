@@ -4,22 +4,24 @@ from __future__ import annotations
 
 from sdfc.diagnostics import Span, scene_error
 
-MOST_SHAPES = 200_000  # after loops, calls and tables are expanded
-MOST_STEPS = 1_000_000  # rounds of loops and calls of functions
+MOST_SHAPES = 100_000  # after loops, calls and tables are expanded
+MOST_STEPS = 500_000  # rounds of loops and calls of functions
 LONGEST_LOOP = 100_000
 LONGEST_LIST = 1_000  # given to one field: each element is printed in the shader
 MOST_ROWS = 100_000  # of a CSV
 LARGEST_FILE = 4 * 2**20  # bytes, of any file that is read
 MOST_FILES = 100
+MOST_PROBLEMS = 50  # that are looked for
 DEEPEST_FRAMES = 60_000  # Python's own, while a scene is expanded
 
 
 class Budget:
     """What is left to one elaboration."""
 
-    __slots__ = ("shapes", "steps")
+    __slots__ = ("is_over", "shapes", "steps")
 
     def __init__(self) -> None:
+        self.is_over = False  # the scene is there: what is evaluated from now on is no longer counted
         self.shapes = 0
         self.steps = 0
 
@@ -32,5 +34,5 @@ class Budget:
     def step(self, span: Span) -> None:
         """One more round of a loop, or call."""
         self.steps += 1
-        if self.steps > MOST_STEPS:
+        if self.steps > MOST_STEPS and not self.is_over:
             raise scene_error(f"more than {MOST_STEPS} calls and rounds of loops are needed to expand the scene", span)

@@ -83,8 +83,9 @@ class FileModule:
                     declare(declaration, self.top())
                 except SceneError as error:
                     problems.add(*error.diagnostics)
-                    # what uses it is not wrong for that
-                    self._values[declaration.name.text] = Quantity(self.context.graph.constant(1.0))
+                    # what uses it is not wrong for that: it goes on with the default alone
+                    spare = problems.attempt(lambda d=declaration: evaluate(d.default, self.top()))  # type: ignore[misc]
+                    self._values[declaration.name.text] = spare or Quantity(self.context.graph.constant(1.0))
 
     def top(self) -> Names:
         """The names outside of every function."""
@@ -174,6 +175,9 @@ class Outside:
 
     def names(self) -> Sequence[str]:
         return self._module.names()
+
+    def step(self, span: Span) -> None:
+        self._module.context.budget.step(span)
 
 
 def _constant(declaration: tree.FunctionDeclaration, module: FileModule) -> Value:

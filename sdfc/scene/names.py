@@ -11,7 +11,7 @@ from sdfc.diagnostics import Diagnostic, InternalError, SceneError, Span, scene_
 from sdfc.field.graph import FieldGraph
 from sdfc.scene.functions import CONSTANTS
 from sdfc.scene.library import Library
-from sdfc.scene.limits import Budget
+from sdfc.scene.limits import MOST_PROBLEMS, Budget
 from sdfc.scene.model import Param
 from sdfc.scene.values import Quantity, Value
 from sdfc.shape.definition import Definition
@@ -36,6 +36,7 @@ class Context:
     budget: Budget = field(default_factory=Budget)
     params: dict[str, Param] = field(default_factory=dict)
     warnings: list[Diagnostic] = field(default_factory=list)
+    tried: set[tuple[object, ...]] = field(default_factory=set)  # formulas, with what their loops depend on
 
 
 class Module(Protocol):
@@ -149,7 +150,7 @@ def did_you_mean(name: str, known: Sequence[str]) -> str | None:
 
 
 class Problems:
-    """Errors gathered so that several are told at once; each place and message once."""
+    """Errors gathered so that several are told at once; each place and message once. Too many end the search."""
 
     __slots__ = ("found",)
 
@@ -159,8 +160,10 @@ class Problems:
     def add(self, *diagnostics: Diagnostic) -> None:
         for diagnostic in diagnostics:
             span = diagnostic.span
-            place = None if span is None else (id(span.source), span.start, span.end)
+            place = None if span is None else (span.source.name, span.start, span.end)
             self.found.setdefault((place, diagnostic.message), diagnostic)
+        if len(self.found) >= MOST_PROBLEMS:
+            self.finish()
 
     def attempt(self, action: Callable[[], Value]) -> Value | None:
         """The action's value, or None and its errors kept."""

@@ -8,7 +8,7 @@ from itertools import product
 from sdfc.field.graph import Expr, Op, substitute, topological
 from sdfc.scene.model import Param
 
-_MOST_AT_ONCE = 4  # params whose corners are all combined: 3 values each
+_MOST_AT_ONCE = 2  # params whose corners are all combined: 3 values each
 
 
 def samples(expr: Expr, params: Mapping[str, Param]) -> Iterator[tuple[Expr, str]]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from sdfc.diagnostics import Diagnostic
 from sdfc.scene.module import FileModule
 from sdfc.syntax import tree
-from sdfc.syntax.walk import called, mentions, walk
+from sdfc.syntax.walk import mentions
 
 _WORDS: dict[type, str] = {
     tree.FunctionDeclaration: "def",
@@ -22,7 +22,7 @@ def unused(module: FileModule) -> list[Diagnostic]:
     reached: set[str] = set()
     pending: list[object] = [s for s in module.file.statements if type(s) not in _WORDS]
     while pending:
-        for name in called(pending.pop()):
+        for name in mentions(pending.pop()).used:
             if name not in reached and name in module.own:
                 reached.add(name)
                 pending.append(module.own[name])
@@ -70,8 +70,8 @@ def _functions(module: FileModule) -> Iterator[tuple[str, tree.FunctionDeclarati
             yield name, declaration
 
 
-def _uses(declaration: tree.FunctionDeclaration) -> set[str]:
+def _uses(declaration: tree.FunctionDeclaration) -> frozenset[str]:
     """The names that the function takes from outside: not its own parameters, loops' variables and `where`."""
+    found = mentions(declaration)
     own = {p.name.text for p in declaration.parameters or ()} | {b.name.text for b in declaration.where}
-    own |= {node.variable.text for node in walk(declaration.body) if isinstance(node, tree.Loop)}
-    return (mentions((declaration.body, declaration.where)) | called(declaration)) - own
+    return found.used - found.bound - own

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sdfc.field.graph import Expr, FieldGraph, Op, Operand
@@ -31,9 +32,20 @@ class Matrix:
 
     def after(self, first: Matrix) -> Matrix:
         """The map that does `first`, then this one."""
+        if self.is_constant and first.is_constant:
+            return self._numbers_after(first)
         rows = [_combine(row, first.linear) for row in self.linear]
         moved = self.point(first.offset)
         return Matrix((rows[0], rows[1], rows[2]), moved)
+
+    def _numbers_after(self, first: Matrix) -> Matrix:
+        """The same in plain numbers: scenes of thousands of parts compose mostly constants."""
+        graph = self.offset[0].graph
+        rows, moved = [[e.number for e in row] for row in self.linear], [e.number for e in self.offset]
+        columns = list(zip(*([e.number for e in row] for row in first.linear), strict=True))
+        shift = [e.number for e in first.offset]
+        linear: list[list[Operand]] = [[_sum_of_products(row, column) for column in columns] for row in rows]
+        return matrix(graph, linear, [_sum_of_products(row, shift) + m for row, m in zip(rows, moved, strict=True)])
 
     def point(self, p: Row) -> Row:
         """The image of a point given by components."""
@@ -72,6 +84,10 @@ class Matrix:
             row: Row = (d[0], d[1], graph.constant(0.0))
             return graph.vector(*(_dot(r, row) for r in self.linear[:2]))
         return graph.vector(*(_dot(r, (d[0], d[1], d[2])) for r in self.linear))
+
+
+def _sum_of_products(a: Sequence[float], b: Sequence[float]) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def _dot(a: Row, b: Row) -> Expr:

@@ -66,11 +66,15 @@ def is_similarity(matrix: Matrix, dimension: int = 3) -> bool:
     """Whether all directions stretch alike, for every value of the params."""
     matrix = _in_space(matrix, dimension)
     samples = [_numbers(matrix)] if matrix.is_constant else [_sampled(matrix, s) for s in _SAMPLES]
-    for rows in samples:
-        values = singular_values(rows)
-        if not values[2] - values[0] <= 1e-7 * values[2]:  # square roots of squares: half the digits
-            return False
-    return True
+    return all(_is_similar(rows) for rows in samples)
+
+
+def _is_similar(rows: list[list[float]]) -> bool:
+    """Whether the columns are orthogonal and of one length, to rounding."""
+    x, y, z = zip(*rows, strict=True)
+    pairs = [math.fsum(a * b for a, b in zip(u, v, strict=True)) for u, v in ((x, x), (y, y), (z, z), (x, y), (x, z), (y, z))]
+    size = pairs[0]
+    return size > 0.0 and all(abs(p - q) <= 1e-12 * size for p, q in zip(pairs, (size, size, size, 0, 0, 0), strict=True))
 
 
 def smallest_stretch(matrix: Matrix, dimension: int = 3) -> Expr:
@@ -88,7 +92,7 @@ def _stretch(matrix: Matrix, which: int) -> Expr:
     columns = [graph.vector(*(row[j] for row in matrix.linear)) for j in range(3)]
     if is_similarity(matrix):
         if matrix.is_constant:
-            return graph.constant(_rounded(math.prod(singular_values(_numbers(matrix))) ** (1 / 3)))
+            return graph.constant(_rounded(math.hypot(*(row[0] for row in _numbers(matrix)))))
         lengths = {round(math.hypot(*(row[0] for row in _sampled(matrix, s))), 9) for s in _SAMPLES}
         return graph.constant(lengths.pop()) if len(lengths) == 1 else graph.length(columns[0])
     if matrix.is_constant:

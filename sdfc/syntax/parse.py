@@ -16,9 +16,11 @@ if TYPE_CHECKING:
     from lark import Lark
 
 LARGEST_TEXT = 4 * 2**20  # characters
+MOST_WORDS = 600_000
 MOST_ERRORS = 10
 
 _lock = threading.Lock()  # the builder holds the text at hand
+_word = re.compile(r"[A-Za-z_0-9.]+|[^\sA-Za-z_0-9.]")
 _statement = re.compile(r"^(?:import|param|material|camera|light|sky|def|field|scene)\b", re.MULTILINE)
 
 
@@ -69,6 +71,11 @@ def _check_text(source: Source) -> None:
     if len(source.text) > LARGEST_TEXT:
         raise scene_error(
             f"{source.name} is too large: {len(source.text)} characters, and {LARGEST_TEXT} are allowed",
+            hint="a table of many parts can be a CSV file, read with instances(...)",
+        )
+    if len(source.text) > MOST_WORDS and len(_word.findall(source.text)) > MOST_WORDS:
+        raise scene_error(
+            f"{source.name} is too large: more than {MOST_WORDS} words, numbers and signs",
             hint="a table of many parts can be a CSV file, read with instances(...)",
         )
     nul = source.text.find("\0")

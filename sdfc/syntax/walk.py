@@ -1,39 +1,51 @@
-"""Every part of a syntax tree, without recursion."""
+"""Which names a syntax tree uses and which it brings itself, found without recursion."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import fields, is_dataclass
-from functools import cache
+from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 from sdfc.syntax import tree
 
-
-@cache
-def _parts(kind: Any) -> tuple[str, ...]:
-    return tuple(f.name for f in fields(kind) if f.name not in ("span", "operator_span"))
+_PLACES = ("span", "operator_span")  # what a node has beside its parts
+_parts: dict[Any, tuple[str, ...]] = {}
 
 
-def walk(root: object) -> Iterator[Any]:
-    """The root and every node below it, in no particular order."""
-    stack: list[object] = [root]
+@dataclass(frozen=True, slots=True)
+class Mentions:
+    """`used`: names of values, calls and chained calls; `bound`: variables of loops."""
+
+    used: frozenset[str]
+    bound: frozenset[str]
+
+
+def mentions(root: object) -> Mentions:
+    """The names anywhere below the root (a node, or a tuple of nodes)."""
+    used: set[str] = set()
+    bound: set[str] = set()
+    stack: list[Any] = [root]
     while stack:
         node = stack.pop()
-        if isinstance(node, tuple):
-            stack.extend(node)
-        elif is_dataclass(node):
-            yield node
-            kind: Any = type(node)
-            stack.extend([getattr(node, name) for name in _parts(kind)])
+        kind = type(node)
+        if kind is tuple:
+            stack += node
+            continue
+        parts = _parts.get(kind)
+        if parts is None:
+            parts = _parts[kind] = _parts_of(kind)
+        if kind is tree.Name:
+            used.add(node.text)
+        elif kind is tree.Call or kind is tree.Method:
+            used.add(node.name.text)
+        elif kind is tree.Loop:
+            bound.add(node.variable.text)
+        for part in parts:
+            stack.append(getattr(node, part))
+    return Mentions(frozenset(used), frozenset(bound))
 
 
-def mentions(root: object) -> set[str]:
-    """The names that are used as values or called, anywhere below the root."""
-    names = {node.text for node in walk(root) if type(node) is tree.Name}
-    return names | {node.name.text for node in walk(root) if type(node) is tree.Call}
-
-
-def called(root: object) -> set[str]:
-    """The names mentioned anywhere below the root, chained calls included."""
-    return mentions(root) | {node.name.text for node in walk(root) if type(node) is tree.Method}
+def _parts_of(kind: Any) -> tuple[str, ...]:
+    """The attributes of a node that hold nodes; of anything else, none."""
+    if not is_dataclass(kind) or kind is tree.Identifier:
+        return ()
+    return tuple(f.name for f in fields(kind) if f.name not in _PLACES and f.type not in ("str", "float"))

@@ -272,6 +272,40 @@ def test_logic_is_three_valued() -> None:
     assert condition.op in LOGIC
 
 
+@settings(max_examples=300, deadline=None)
+@given(
+    expressions(numbers=[0.0, 1.0, -1.0, 0.5, 2.0, 3.0, 0.1]),
+    st.lists(st.sampled_from([0.0, 1.0, -1.0, 0.3, -0.7]), min_size=6, max_size=6),
+    st.sampled_from([1e-3, 0.1, 0.7]),
+)
+def test_both_sides_of_the_jumps_hold_every_value(root: Expr, line: list[float], width: float) -> None:
+    o, d = np.array(line[:3])[:, None], np.array(line[3:])[:, None]
+    ends = np.array([0.25]), np.array([0.25 + width])
+    evaluator = IntervalEvaluator(root)
+    lo, hi = evaluator.across_jumps(o, d, *ends, {"k": 0.75})
+    plain = evaluator.along_ray(o, d, *ends, {"k": 0.75})
+    values = sampled(root, o + np.linspace(0.25, 0.25 + width, 63)[1:-1] * d, {"k": 0.75})
+    # where an argument stays at the jump itself, or sign's does, an isolated point is one of a kind
+    assume(not any(node.op in (Op.SIGN, Op.EQUAL) for node in topological([root])))
+    assert enclosed(lo, hi, values).all()
+    assert (plain.lo <= lo).all() and (hi <= plain.hi).all()
+
+
+def test_sides_of_a_jump_are_tight_and_independent() -> None:
+    graph = FieldGraph()
+    p = graph.input("p")
+    cell = graph.call(Op.MOD, p, 1.0) - 0.5
+    evaluator = IntervalEvaluator(graph.max(graph.abs(cell[0]), graph.abs(cell[1])) + 0.0 * cell[2])
+    o, d = np.array([[0.0], [0.0], [0.3]]), np.array([[1.0], [-1.0], [0.0]])
+    ends = np.array([-1e-3]), np.array([1e-3])
+    lo, hi = evaluator.across_jumps(o, d, *ends)
+    assert lo[0] == pytest.approx(0.499) and hi[0] == pytest.approx(0.5)
+    assert evaluator.along_ray(o, d, *ends).lo[0] == pytest.approx(0.0, abs=1e-12)
+    everything = IntervalEvaluator(graph.length(graph.call(Op.FLOOR, graph.vector(p[0], p[0] + 2.0, p[0] + 4.0))))
+    lo, hi = everything.across_jumps(o, d, np.array([-0.5]), np.array([0.5]))
+    assert 3.1 < lo[0] < 3.2 and hi[0] == pytest.approx(np.sqrt(21.0))
+
+
 def bound(build: Callable[[FieldGraph, Expr], Expr], lo: float = -2.0, hi: float = 2.0) -> float:
     graph = FieldGraph()
     return gradient_bound(build(graph, graph.input("p")), [lo] * 3, [hi] * 3)

@@ -83,11 +83,12 @@ def test_whole_numbers_reach_integer_uniforms(device: Device) -> None:
 
 
 def test_a_refused_shader_shows_the_numbered_glsl_around_the_place(device: Device) -> None:
-    text = HEAD + "void main() {\n    float a = 1.0;\n    first = vec4(missing);\n}\n"
+    text = HEAD + "void main() {\n    float a = 1.0;\n    first = vec4(missing);  // s.sdf:3:7\n}\n"
     with pytest.raises(ShaderRefusedError) as caught:
         FragmentProgram(device, text)
     assert caught.value.complaints[0].line == 5
     assert "missing" in caught.value.complaints[0].message
+    assert "line 5 (made from s.sdf:3:7): error: " in str(caught.value)
     assert ">    5 |     first = vec4(missing);" in str(caught.value)
     assert "     4 |     float a = 1.0;" in str(caught.value)
     assert device.renderer in str(caught.value)

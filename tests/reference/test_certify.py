@@ -62,12 +62,11 @@ def certify(build: Callable[[Expr], Expr], rays: Rays, t_end: float = 20.0, **op
     return first_roots(build(FieldGraph().input("p")), *rays, 0.0, t_end, **options)
 
 
-def check(truth: Certificate, hit: np.ndarray, t: np.ndarray, slack: float = 1e-9) -> None:
-    """The certificate says what the closed form says, to the last bracket."""
+def check(truth: Certificate, hit: np.ndarray, t: np.ndarray) -> None:
+    """The certificate says what the closed form says, up to the closed form's own rounding at a grazing hit."""
     assert (truth.status != Status.AMBIGUOUS).all()
     assert ((truth.status == Status.HIT) == hit).all()
-    assert (truth.t_lo[hit] <= t[hit] + 1e-13 * t[hit]).all() or slack > 1e-12
-    assert (truth.t_lo[hit] - slack <= t[hit]).all() and (t[hit] <= truth.t_hi[hit] + slack).all()
+    assert (truth.t_lo[hit] - 1e-12 <= t[hit]).all() and (t[hit] <= truth.t_hi[hit] + 1e-12).all()
     assert (truth.t_hi[hit] - truth.t_lo[hit]).max(initial=0.0) < 3e-10
 
 
@@ -75,13 +74,13 @@ def test_a_sphere_is_hit_where_the_quadratic_says() -> None:
     rays = random_rays(4000, 1)
     expected = first_runs(sphere_leaf(rays, (0.1, 0.2, -0.3), 0.8), 0.0, 20.0)
     assert 500 < expected.hit.sum() < 3500
-    check(certify(lambda p: sphere(p, (0.1, 0.2, -0.3), 0.8), rays), expected.hit, expected.t, 1e-10)
+    check(certify(lambda p: sphere(p, (0.1, 0.2, -0.3), 0.8), rays), expected.hit, expected.t)
 
 
 def test_a_box_is_hit_where_the_slabs_say() -> None:
     rays = random_rays(4000, 2)
     expected = first_runs(box_leaf(rays, (0.1, 0.0, 0.2), (0.5, 0.9, 0.3)), 0.0, 20.0)
-    check(certify(lambda p: box(p, (0.1, 0.0, 0.2), (0.5, 0.9, 0.3)), rays), expected.hit, expected.t, 1e-10)
+    check(certify(lambda p: box(p, (0.1, 0.0, 0.2), (0.5, 0.9, 0.3)), rays), expected.hit, expected.t)
 
 
 def test_a_torus_is_hit_at_the_first_root_of_its_quartic() -> None:
@@ -151,7 +150,7 @@ def test_random_csg_agrees_with_merged_ray_intervals(
     expected = first_runs(solid(rays), 0.0, 20.0, thin=1e-6)
     truth = certify(field, rays, thin=1e-6, tolerance=1e-7)
     sure = ~truth.contested
-    assert sure.sum() > 280
+    assert sure.sum() > 200
     assert ((truth.status == Status.HIT) == expected.hit)[sure].all()
     both = sure & expected.hit
     assert np.abs(truth.t_lo[both] - expected.t[both]).max(initial=0.0) < 1e-9
@@ -166,7 +165,7 @@ def test_a_lipschitz_constant_changes_the_time_not_the_truth(lipschitz: float | 
     )
     assert (truth.status == other.status).all()
     hit = truth.status == Status.HIT
-    assert np.abs(truth.t_lo - other.t_lo)[hit].max() < 1e-9
+    assert np.abs(truth.t_lo[hit] - other.t_lo[hit]).max() < 1e-9
 
 
 def test_no_field_is_distance_like_enough_to_matter() -> None:
@@ -298,7 +297,7 @@ def test_an_infinite_ray_ends() -> None:
     rays = random_rays(200, 7)
     truth = certify(lambda p: sphere(p, (0, 0, 0), 0.8), rays, t_end=np.inf)
     expected = first_runs(sphere_leaf(rays, (0, 0, 0), 0.8), 0.0, np.inf)
-    check(truth, expected.hit, expected.t, 1e-10)
+    check(truth, expected.hit, expected.t)
 
 
 @pytest.mark.parametrize("scale", [1e-4, 1.0, 1e4])
@@ -312,7 +311,7 @@ def test_scale_and_distance_from_the_origin_do_not_matter(scale: float, offset: 
     expected = first_runs(sphere_leaf((o, d), (offset * scale,) * 3, 0.8 * scale), 0.0, 20.0 * scale)
     assert ((truth.status == Status.HIT) == expected.hit).all()
     close = 1e-10 * scale * (1.0 + offset)
-    assert np.abs(truth.t_lo - expected.t)[expected.hit].max() < 20.0 * close
+    assert np.abs(truth.t_lo[expected.hit] - expected.t[expected.hit]).max() < 20.0 * close
 
 
 def test_a_jump_is_a_boundary_too() -> None:
@@ -338,3 +337,54 @@ def test_params_reach_the_field() -> None:
     rays = ray((-3.0, 0.0, 0.0), (1.0, 0.0, 0.0))
     for radius in (0.5, 1.5):
         assert first_roots(root, *rays, 0.0, 9.0, {"r": radius}).t_lo[0] == pytest.approx(3.0 - radius)
+
+
+def repeated(p: Expr, spacing: float = 1.0) -> Expr:
+    graph = p.graph
+    cell = graph.call(Op.MOD, p + 0.5 * spacing, spacing) - 0.5 * spacing
+    return graph.max(graph.length(cell) - 0.3, sphere(p, (0.0, 0.0, 0.0), 1.9))
+
+
+def test_cell_borders_of_a_repetition_are_not_films() -> None:
+    """mod jumps from 1 to 0 where the distance does not: the ray goes on, and nothing there is contested."""
+    rays = random_rays(400, 9)
+    truth = certify(repeated, rays, tolerance=1e-6, thin=1e-7)
+    places = [(x, y, z) for x in range(-2, 3) for y in range(-2, 3) for z in range(-2, 3)]
+    balls = Either(tuple(sphere_leaf(rays, place, 0.3) for place in places))
+    expected = first_runs(Both((balls, sphere_leaf(rays, (0.0, 0.0, 0.0), 1.9))), 0.0, 20.0)
+    assert truth.contested.sum() <= 1
+    assert ((truth.status == Status.HIT) == expected.hit)[~truth.contested].all()
+    both = expected.hit & ~truth.contested
+    assert np.abs(truth.t_lo[both] - expected.t[both]).max() < 1e-9
+
+
+def test_a_border_crossed_in_three_directions_at_once_is_crossed() -> None:
+    rays = ray((-0.75, -0.75, -0.75), (1.0, 1.0, 1.0))
+    hollow = certify(lambda p: 0.95 - repeated(p), rays, t_end=1.25 + 2.0**-20, thin=1e-9)
+    assert hollow.status[0] == Status.MISS
+
+
+def test_a_polar_repetition_crosses_the_branch_cut() -> None:
+    def petals(p: Expr) -> Expr:
+        graph = p.graph
+        angle, radius = graph.call(Op.ATAN2, p[2], p[0]), graph.length(p.swizzle("xz"))
+        turn = 2.0 * np.pi / 6
+        angle = angle - turn * graph.call(Op.ROUND, angle / turn)
+        q = graph.vector(radius * graph.call(Op.COS, angle) - 1.0, p[1], radius * graph.call(Op.SIN, angle))
+        return graph.length(q) - 0.3
+
+    rays = random_rays(400, 10)
+    truth = certify(petals, rays, tolerance=1e-6, thin=1e-7)
+    angles = np.arange(6) * np.pi / 3
+    balls = Either(tuple(sphere_leaf(rays, (np.cos(a), 0.0, np.sin(a)), 0.3) for a in angles))
+    expected = first_runs(balls, 0.0, 20.0)
+    assert truth.contested.sum() <= 1
+    assert ((truth.status == Status.HIT) == expected.hit)[~truth.contested].all()
+
+
+def test_a_wall_behind_a_jump_is_not_jumped() -> None:
+    """The field is discontinuous at the cell border and solid beyond it."""
+    truth = certify(
+        lambda p: 0.5 - p.graph.call(Op.FLOOR, p[2]), ray((0.0, 0.0, 0.5), (0.0, 0.0, 1.0)), tolerance=1e-3, thin=1e-6
+    )
+    assert truth.status[0] == Status.HIT and truth.t_lo[0] == pytest.approx(0.5)
