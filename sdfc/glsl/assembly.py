@@ -69,7 +69,7 @@ class _Assembly:
         self._setting = setting
         self._entry = entry
         self._live = Live()
-        self._functions = Functions(graph, Lowering())
+        self._functions = Functions(graph, Lowering(), (p.name for p in setting.params))
         self._lit = entry != "probe"
 
     def text(self, stage: str) -> str:
@@ -86,7 +86,10 @@ class _Assembly:
         has_map = tracer.needs_map or self._lit
         distance = DistanceWriter(self._graph, self._functions, self._live, plan.slopes)
         map_text = distance.write(plan.root) if has_map else ""
-        surface = SurfaceWriter(self._graph, self._functions, self._live, list(plan.materials), self._setting.unpainted).write(plan.root)
+        taken = [identifier(p.name) for p in self._setting.params]
+        materials, unpainted = list(plan.materials), self._setting.unpainted
+        surfaces = SurfaceWriter(self._graph, self._functions, self._live, materials, unpainted, taken)
+        surface = surfaces.write(plan.root)
         context: dict[str, object] = {
             "version": VERSION,
             "header": self._header(),
@@ -131,7 +134,7 @@ class _Assembly:
         needed |= {"point_falloff": len(suns) < len(lights), "occlusion_weight": True, "ambient": True}
         needed |= {"transmit": transmission}
         needed |= dict.fromkeys(("tone_map", "encode_srgb"), self._entry == "picture")
-        functions = [print_function(FUNCTIONS[name](self._graph)) for name, wanted in needed.items() if wanted]
+        functions = [print_function(FUNCTIONS[name](self._graph), name) for name, wanted in needed.items() if wanted]
         return {
             "shading_functions": "\n".join(functions),
             "up": _vector(self._setting.up),

@@ -27,10 +27,10 @@ CHAIN = 4  # so many steps of min and max in a row become updates of one variabl
 LARGEST_PRODUCT = 64  # integer powers up to this are written as products
 
 
-def print_function(function: Function) -> str:
+def print_function(function: Function, name: str | None = None) -> str:
     """The GLSL definition of a function, under its doc string as a comment.
 
-    Parameters keep their names where GLSL allows it and no uniform has the same.
+    Parameters keep their names where GLSL allows it and no uniform has the same. `name` is taken as it is.
     """
     nodes = list(topological([function.result]))
     scope = Names(identifier(str(n.value)) for n in nodes if n.op is Op.PARAM)
@@ -41,7 +41,7 @@ def print_function(function: Function) -> str:
     lines, (result,) = printer.statements([function.result])
     parameters = ", ".join(f"{type_name(type_)} {renamed[name]}" for name, type_ in function.parameters)
     doc = [f"// {line}".rstrip().rstrip("\\") for line in function.doc.splitlines()]
-    head = f"{type_name(function.result.type)} {identifier(function.name)}({parameters}) {{"
+    head = f"{type_name(function.result.type)} {name or identifier(function.name)}({parameters}) {{"
     body = [f"    {line}" for line in (*lines, f"return {result};")]
     return "\n".join([*doc, head, *body, "}"]) + "\n"
 

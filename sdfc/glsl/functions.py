@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 from typing import assert_never
@@ -9,6 +10,7 @@ from typing import assert_never
 from sdfc.field.derivative import directional, gradient
 from sdfc.field.function import Function
 from sdfc.field.graph import Expr, FieldGraph, Type
+from sdfc.glsl.names import Names, identifier
 from sdfc.plan.steps import Part
 from sdfc.shape.definition import Argument, Definition, Kind
 from sdfc.shape.graph import Apply
@@ -49,11 +51,11 @@ class Call:
 class Functions:
     """Collects functions as calls are asked for; equal ones are one."""
 
-    def __init__(self, graph: FieldGraph, lowering: Lowering) -> None:
+    def __init__(self, graph: FieldGraph, lowering: Lowering, taken: Iterable[str] = ()) -> None:
         self._graph = graph
         self._lowering = lowering
         self._by_key: dict[tuple[object, ...], Function] = {}
-        self._taken: dict[str, int] = {}
+        self._names = Names(identifier(n) for n in taken)
 
     @property
     def all(self) -> tuple[Function, ...]:
@@ -75,7 +77,7 @@ class Functions:
             arguments, formal, label, parametric = (), (), name, shape
             key = (shape.id, role)
         if key not in self._by_key:
-            self._by_key[key] = self._made(parametric, role, self._unique(label + role.value), formal)
+            self._by_key[key] = self._made(parametric, role, self._names.fresh(label + role.value), formal)
         return Call(self._by_key[key].name, arguments)
 
     def joined(self, blend: Apply) -> Call:
@@ -100,12 +102,8 @@ class Functions:
                 slopes = [directional(result, {a: one}), directional(result, {b: one})]
                 result = self._graph.vector(*slopes, result)
             formal = (("a", Type.FLOAT), ("b", Type.FLOAT), *((p.name, _TYPES[p.kind]) for p in definition.values))
-            self._by_key[key] = Function(self._unique(definition.name + role.value), formal, result, definition.doc)
+            self._by_key[key] = Function(self._names.fresh(definition.name + role.value), formal, result, definition.doc)
         return Call(self._by_key[key].name, tuple(a for a in blend.arguments if isinstance(a, Expr)))
-
-    def _unique(self, name: str) -> str:
-        self._taken[name] = self._taken.get(name, 0) + 1
-        return name if self._taken[name] == 1 else f"{name}_{self._taken[name]}"
 
     def _input(self, name: str, kind: Kind) -> Expr:
         return self._graph.input(name, _TYPES[kind])

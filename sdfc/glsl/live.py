@@ -1,8 +1,15 @@
-"""Values that a uniform decides: computed once, at the top of main, into globals (GL.md 0: uniforms read in loops are gathers)."""
+"""Values that a uniform decides: computed once, at the top of main (GL.md 0: uniforms read in loops are gathers)."""
 
 from __future__ import annotations
 
 from sdfc.field.graph import Expr, Op, topological
+
+
+_CONSTANTS = frozenset({"GROW", "CUT"})  # the templates' own, where generated calls read them
+_COSTLY = frozenset(
+    {Op.SIN, Op.COS, Op.TAN, Op.ASIN, Op.ACOS, Op.ATAN, Op.ATAN2, Op.EXP, Op.LOG, Op.POW, Op.SQRT, Op.LENGTH, Op.DIV}
+    | {Op.MOD}
+)
 
 
 class Live:
@@ -15,12 +22,18 @@ class Live:
 
     def __call__(self, expr: Expr) -> str | None:
         """The global that holds `expr`, or None where it depends on more than params, or on none."""
-        if expr.op in (Op.CONST, Op.INPUT, Op.PARAM) or not self._is_live(expr):
+        if expr.op is Op.INPUT and expr.value in _CONSTANTS:
+            return str(expr.value)
+        if expr.op in (Op.CONST, Op.INPUT, Op.PARAM) or not self._is_live(expr) or not self._is_costly(expr):
             return None
         if expr.id not in self._names:
             self._names[expr.id] = f"live_{len(self.values) + 1}"
             self.values.append((self._names[expr.id], expr))
         return self._names[expr.id]
+
+    def _is_costly(self, expr: Expr) -> bool:
+        """Whether a global, and the register that it keeps, is worth it: a product or a sum is not."""
+        return any(node.op in _COSTLY for node in topological([expr]))
 
     def _is_live(self, expr: Expr) -> bool:
         if expr.id not in self._kind:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import assert_never
 
@@ -10,6 +11,7 @@ from sdfc.glsl.body import Body, own_point
 from sdfc.glsl.expression import type_name
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
+from sdfc.glsl.names import Names
 from sdfc.plan.steps import All, Any, Ball, Blend, BlendNode, BlendTree, BlendUnion, Closed, Part, Step, Tangent, Within
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
@@ -33,14 +35,15 @@ class SurfaceWriter:
     """Writes one scene's surface function."""
 
     def __init__(
-        self, graph: FieldGraph, functions: Functions, live: Live, materials: list[Material], unpainted: Material
+        self, graph: FieldGraph, functions: Functions, live: Live, materials: list[Material], unpainted: Material, taken: Iterable[str]
     ) -> None:
         self._graph = graph
         self._functions = functions
         self._live = live
         self._materials = materials
         self._unpainted = unpainted
-        self._names = {id(m): f"{_identifier(m.name)}_surface" for m in materials}
+        names = Names(taken)
+        self._names = {id(m): names.fresh(f"{m.name}_material") for m in materials}
         self._varying = [p for p in PROPERTIES if len({_property(m, p).id for m in materials}) > 1]
         self._p = graph.input("p")
         self._count = 0
@@ -187,10 +190,6 @@ def _property(material: Material, name: str) -> Expr:
     value = getattr(material, name)
     assert isinstance(value, Expr)
     return value
-
-
-def _identifier(name: str) -> str:
-    return "".join(c if c.isalnum() else "_" for c in name).strip("_") or "material"
 
 
 def _is_translation(matrix: Matrix) -> bool:

@@ -77,7 +77,7 @@ def _parts(definition: Definition, matched: dict[str, Given]) -> list[Shape]:
         try:
             parts.append(values.shape(given.value, given.span, 3 if parameter.kind is Kind.SOLID else 2))
         except SceneError as error:
-            problems.add(*error.diagnostics)
+            problems.take(error)
     problems.finish()
     return parts
 
@@ -94,9 +94,9 @@ def _values(definition: Definition, matched: dict[str, Given], names: Names, pla
             elif parameter.default is not None:
                 environment[parameter.name] = parameter.default(environment)
             span = place if given is None else given.span
-            check(parameter, environment[parameter.name], span, names.context.params)
+            check(parameter, environment[parameter.name], span, names.context)
         except SceneError as error:
-            problems.add(*error.diagnostics)
+            problems.take(error)
     problems.finish()
     _check_requirements(definition, environment, names, place)
     return list(environment.values())
@@ -105,7 +105,7 @@ def _values(definition: Definition, matched: dict[str, Given], names: Names, pla
 def _check_requirements(definition: Definition, environment: dict[str, Argument], names: Names, place: Span) -> None:
     problems = Problems()
     for holds, message in definition.requirements:
-        for value, where in samples(holds(environment), names.context.params):
+        for value, where in samples(holds(environment), names.context):
             if not value.numbers[0]:
                 problems.add(Diagnostic(f"{definition.name.removesuffix(IN_PLANE)}: {message}{where}", place))
                 break

@@ -12,8 +12,7 @@ from sdfc.field.graph import Expr
 from sdfc.scene import values
 from sdfc.scene.arithmetic import elements
 from sdfc.scene.limits import LONGEST_LIST
-from sdfc.scene.model import Param
-from sdfc.scene.names import Names, Problems, did_you_mean, evaluate
+from sdfc.scene.names import Context, Names, Problems, did_you_mean, evaluate
 from sdfc.scene.ranges import samples
 from sdfc.scene.values import Value
 from sdfc.shape.definition import Argument, Kind, Parameter
@@ -37,7 +36,7 @@ def gather(arguments: Sequence[tree.Argument], names: Names) -> list[Given]:
         try:
             given += _evaluated(argument, names)
         except SceneError as error:
-            problems.add(*error.diagnostics)
+            problems.take(error)
     problems.finish()
     return given
 
@@ -148,12 +147,12 @@ def convert(parameter: Parameter, given: Given) -> Argument:
 # --- limits
 
 
-def check(parameter: Parameter, argument: Argument, span: Span, params: Mapping[str, Param]) -> None:
+def check(parameter: Parameter, argument: Argument, span: Span, context: Context) -> None:
     """Raises SceneError where the value is not finite or outside of the limits, for any value of a param."""
     for expr in argument if isinstance(argument, tuple) else (argument,):
         if parameter.kind is Kind.BOOLEAN:
             continue
-        for value, where in samples(expr, params):
+        for value, where in samples(expr, context):
             for number in value.numbers:
                 complaint = _complaint(parameter, number)
                 if complaint is not None:
@@ -175,8 +174,8 @@ def _complaint(parameter: Parameter, number: float) -> str | None:
     return None
 
 
-def check_finite(what: str, expr: Expr, span: Span, params: Mapping[str, Param]) -> None:
+def check_finite(what: str, expr: Expr, span: Span, context: Context) -> None:
     """Raises SceneError where a component is NaN or infinite."""
-    for value, where in samples(expr, params):
+    for value, where in samples(expr, context):
         if not all(map(math.isfinite, value.numbers)):
             raise scene_error(f"{what} must be finite{where}", span)

@@ -42,7 +42,7 @@ def block(node: tree.Block, names: Names) -> list[tuple[Value, Span]]:
         try:
             found += elements([element], names)
         except SceneError as error:
-            problems.add(*error.diagnostics)
+            problems.take(error)
     problems.finish()
     return found
 
@@ -61,7 +61,7 @@ def flat_shapes(operands: Sequence[tuple[Value, Span]], dimension: int | None = 
             shapes.append(values.shape(value, span, dimension))
             dimension = dimension or shapes[0].dimension
         except SceneError as error:
-            problems.add(*error.diagnostics)
+            problems.take(error)
     problems.finish()
     return shapes
 
@@ -141,7 +141,7 @@ def _blended(name: str, shapes: Sequence[Shape], width: Given, names: Names, spa
     definition = for_children(definition, shapes, names)
     parameter = definition.values[0]
     argument = convert(parameter, width)
-    check(parameter, argument, width.span, names.context.params)
+    check(parameter, argument, width.span, names.context)
     result = shapes[0]
     for shape in shapes[1:]:
         names.context.budget.shape(span)

@@ -96,7 +96,7 @@ def _check_declarations(module: FileModule, problems: Problems) -> None:
             elif not isinstance(declaration, tree.FunctionDeclaration) or declaration.parameters is None:
                 module.value(name, declaration.name.span)
         except SceneError as error:
-            problems.add(*error.diagnostics)
+            problems.take(error)
 
 
 def _only(module: FileModule, kind: type, word: str, problems: Problems) -> tree.Statement | None:
@@ -113,7 +113,7 @@ def _camera(module: FileModule, problems: Problems) -> Camera | None:
     try:
         return settings.camera(node, module.top()) if isinstance(node, tree.CameraDeclaration) else None
     except SceneError as error:
-        problems.add(*error.diagnostics)
+        problems.take(error)
         return None
 
 
@@ -122,7 +122,7 @@ def _sky(module: FileModule, problems: Problems) -> Sky | None:
     try:
         return settings.sky(node, module.top()) if isinstance(node, tree.SkyDeclaration) else None
     except SceneError as error:
-        problems.add(*error.diagnostics)
+        problems.take(error)
         return None
 
 
@@ -133,7 +133,7 @@ def _lights(module: FileModule, problems: Problems) -> list[Light]:
             try:
                 lights.append(settings.light(node, module.top()))
             except SceneError as error:
-                problems.add(*error.diagnostics)
+                problems.take(error)
     return lights
 
 
@@ -147,5 +147,5 @@ def _root(module: FileModule, problems: Problems) -> Shape | None:
         shapes = combine.flat_shapes(combine.block(node.block, module.top()), 3)
         return combine.union(shapes, module.top(), node.span)
     except SceneError as error:
-        problems.add(*error.diagnostics)
+        problems.take(error)
         return None

@@ -32,7 +32,7 @@ class _Loader:
                 try:
                     imported.append((statement, self.imported(statement, place)))
                 except SceneError as error:
-                    self.problems.add(*error.diagnostics)
+                    self.problems.take(error)
         made.declare(imported, self.problems)
         return made
 

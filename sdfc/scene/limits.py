@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sdfc.diagnostics import Span, scene_error
+from sdfc.diagnostics import Diagnostic, SceneError, Span
 
 MOST_SHAPES = 100_000  # after loops, calls and tables are expanded
 MOST_STEPS = 500_000  # rounds of loops and calls of functions
@@ -13,6 +13,10 @@ LARGEST_FILE = 4 * 2**20  # bytes, of any file that is read
 MOST_FILES = 100
 MOST_PROBLEMS = 50  # that are looked for
 DEEPEST_FRAMES = 60_000  # Python's own, while a scene is expanded
+
+
+class LimitError(SceneError):
+    """A limit was passed: there is no going on to look for other errors."""
 
 
 class Budget:
@@ -29,10 +33,11 @@ class Budget:
         """One more shape."""
         self.shapes += 1
         if self.shapes > MOST_SHAPES:
-            raise scene_error(f"the scene has more than {MOST_SHAPES} shapes once it is expanded", span)
+            raise LimitError(Diagnostic(f"the scene has more than {MOST_SHAPES} shapes once it is expanded", span))
 
-    def step(self, span: Span) -> None:
-        """One more round of a loop, or call."""
+    def step(self, span: Span | None) -> None:
+        """One more round of a loop, call, or value tried."""
         self.steps += 1
         if self.steps > MOST_STEPS and not self.is_over:
-            raise scene_error(f"more than {MOST_STEPS} calls and rounds of loops are needed to expand the scene", span)
+            message = f"more than {MOST_STEPS} calls and rounds of loops are needed to expand the scene"
+            raise LimitError(Diagnostic(message, span))

@@ -82,7 +82,7 @@ class FileModule:
                 try:
                     declare(declaration, self.top())
                 except SceneError as error:
-                    problems.add(*error.diagnostics)
+                    problems.take(error)
                     # what uses it is not wrong for that: it goes on with the default alone
                     spare = problems.attempt(lambda d=declaration: evaluate(d.default, self.top()))  # type: ignore[misc]
                     self._values[declaration.name.text] = spare or Quantity(self.context.graph.constant(1.0))

@@ -11,7 +11,7 @@ from sdfc.diagnostics import Diagnostic, InternalError, SceneError, Span, scene_
 from sdfc.field.graph import FieldGraph
 from sdfc.scene.functions import CONSTANTS
 from sdfc.scene.library import Library
-from sdfc.scene.limits import MOST_PROBLEMS, Budget
+from sdfc.scene.limits import MOST_PROBLEMS, Budget, LimitError
 from sdfc.scene.model import Param
 from sdfc.scene.values import Quantity, Value
 from sdfc.shape.definition import Definition
@@ -165,12 +165,18 @@ class Problems:
         if len(self.found) >= MOST_PROBLEMS:
             self.finish()
 
+    def take(self, error: SceneError) -> None:
+        """Keeps the errors, to be told with others. A limit that was passed ends everything at once."""
+        if isinstance(error, LimitError):
+            raise error
+        self.add(*error.diagnostics)
+
     def attempt(self, action: Callable[[], Value]) -> Value | None:
         """The action's value, or None and its errors kept."""
         try:
             return action()
         except SceneError as error:
-            self.add(*error.diagnostics)
+            self.take(error)
             return None
 
     def finish(self) -> None:

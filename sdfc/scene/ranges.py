@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import product
 
 from sdfc.field.graph import Expr, Op, substitute, topological
 from sdfc.scene.model import Param
+from sdfc.scene.names import Context
 
 _MOST_AT_ONCE = 2  # params whose corners are all combined: 3 values each
 
 
-def samples(expr: Expr, params: Mapping[str, Param]) -> Iterator[tuple[Expr, str]]:
+def samples(expr: Expr, context: Context) -> Iterator[tuple[Expr, str]]:
     """Constant values that the expression takes, each with words for where: '' or ' at angle = 0.5'.
 
     A constant is its own only sample. Otherwise every param takes its default, its low and its high, in all
@@ -20,8 +21,9 @@ def samples(expr: Expr, params: Mapping[str, Param]) -> Iterator[tuple[Expr, str
     if expr.is_constant:
         yield expr, ""
         return
-    used = {node: params[str(node.value)] for node in topological([expr]) if node.op is Op.PARAM}
+    used = {node: context.params[str(node.value)] for node in topological([expr]) if node.op is Op.PARAM}
     for setting in _settings(tuple(used.values())):
+        context.budget.step(None)
         replace = {node: expr.graph.constant(*setting[param.name]) for node, param in used.items()}
         value = substitute(expr, replace)
         if value.is_constant:

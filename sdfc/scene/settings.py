@@ -110,7 +110,7 @@ def properties(entries: Sequence[tree.Property], names: Names) -> list[Given]:
         try:
             given.append(Given(evaluate(entry.value, names), entry.value.span, entry.name))
         except SceneError as error:
-            problems.add(*error.diagnostics)
+            problems.take(error)
     problems.finish()
     return given
 
@@ -127,7 +127,7 @@ def camera(node: tree.CameraDeclaration, names: Names) -> Camera:
     graph = names.context.graph
     up = read["up"]
     view = read["target"] - read["eye"]
-    for value, where in samples(view, names.context.params):
+    for value, where in samples(view, names.context):
         if not any(value.numbers):
             raise scene_error(f"the camera's eye is at its target{where}", node.span)
     if "up" not in said and _parallel(view, up, names) is not None:
@@ -143,7 +143,7 @@ def _parallel(view: Expr, up: Expr, names: Names) -> str | None:
     """Where the two are parallel, or None where they never are."""
     graph = view.graph
     turned = graph.length(graph.cross(view, up)) / (graph.length(view) * graph.length(up))
-    return next((where for value, where in samples(turned, names.context.params) if not value.number > 1e-9), None)
+    return next((where for value, where in samples(turned, names.context) if not value.number > 1e-9), None)
 
 
 def light(node: tree.LightDeclaration, names: Names) -> Light:
@@ -155,7 +155,7 @@ def light(node: tree.LightDeclaration, names: Names) -> Light:
         raise scene_error(message, node.span, "direction: the way the light of a sun travels; position: of a lamp")
     if "position" in read:
         return PointLight(read["position"], read["color"], read["intensity"])
-    for value, where in samples(read["direction"], names.context.params):
+    for value, where in samples(read["direction"], names.context):
         if not any(value.numbers):
             raise scene_error(f"a light's direction cannot be zero{where}", node.span)
     return Sun(read["direction"], read["color"], read["intensity"])
@@ -180,7 +180,7 @@ def _read(what: str, table: Mapping[str, _Row], given: Sequence[Given], names: N
             elif row.default is not None:
                 read[key] = graph.constant(*row.default)
         except SceneError as error:
-            problems.add(*error.diagnostics)
+            problems.take(error)
     problems.finish()
     return read
 
@@ -191,7 +191,7 @@ def _property(key: str, row: _Row, given: Given, names: Names) -> Expr:
     except SceneError as error:
         first = error.diagnostics[0]
         raise SceneError(Diagnostic(f"{key}: {first.message}", first.span, first.hint)) from None
-    for value, where in samples(expr, names.context.params):
+    for value, where in samples(expr, names.context):
         for number in value.numbers:
             within = row.low < number < row.high if row.open else row.low <= number <= row.high
             if not (within and math.isfinite(number)):

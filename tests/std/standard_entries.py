@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from hypothesis import reject
@@ -51,6 +52,9 @@ class Subject:
     def __repr__(self) -> str:
         values = {n: a.numbers if isinstance(a, Expr) else [e.numbers for e in a] for n, a in self.arguments.items()}
         return f"{self.definition.name}({values}, {[c.words for c in self.children.values()]})"
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        printer.text(repr(self))  # what hypothesis shows
 
     @property
     def point(self) -> Expr:
@@ -181,7 +185,9 @@ def _argument(draw: st.DrawFn, name: str, parameter: Parameter, graph: FieldGrap
             number = st.floats(0.1, 1.0)
         width = _LISTS[kind]
         return tuple(
-            graph.constant(*draw(st.lists(number, min_size=width, max_size=width).filter(lambda v: math.hypot(*v) > 1e-2)))
+            graph.constant(
+                *draw(st.lists(number, min_size=width, max_size=width).filter(lambda v: math.hypot(*v) > 1e-2))
+            )
             for _ in range(elements)
         )
     if kind is Kind.BOOLEAN:

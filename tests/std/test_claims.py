@@ -63,7 +63,9 @@ def test_lipschitz(name: str, data: st.DataObject, seed: int) -> None:
     subject = data.draw(subjects(name))
     generator = np.random.default_rng(seed)
     a = np.concatenate([subject.points(generator, 700, spread) for spread in (1.1, 1.4, 12.0)], axis=1)
-    near = a + _directions(generator, len(a), a.shape[1]) * subject.scale * 10.0 ** generator.uniform(-4, -1, a.shape[1])
+    near = a + _directions(generator, len(a), a.shape[1]) * subject.scale * 10.0 ** generator.uniform(
+        -4, -1, a.shape[1]
+    )
     far = generator.permutation(a, axis=1)
     at_a = subject.value(a)
     assert np.isfinite(at_a).all()
@@ -73,6 +75,24 @@ def test_lipschitz(name: str, data: st.DataObject, seed: int) -> None:
         excess = np.abs(at_a - subject.value(b)) - subject.lipschitz * gap * (1 + 1e-9) - slack
         worst = int(np.argmax(excess))
         assert excess[worst] <= 0, (a[:, worst], b[:, worst], excess[worst] / gap[worst])
+
+
+@pytest.mark.parametrize("name", NAMES)
+@checked
+@given(data=st.data(), seed=_seeds)
+def test_the_gradient_is_no_longer_than_lipschitz(name: str, data: st.DataObject, seed: int) -> None:
+    """Climbs to where the gradient is longest: from the best points to better ones beside them, ever nearer."""
+    subject = data.draw(subjects(name))
+    generator = np.random.default_rng(seed)
+    slope = Evaluator([gradient(subject.formula, subject.point)])
+    points = np.concatenate([subject.points(generator, 400, spread) for spread in (1.2, 5.0)], axis=1)
+    for step in (0.5, 0.2, 0.1, 0.03, 0.01, 0.003):
+        steepness = np.linalg.norm(slope({"p": points})[0], axis=0)
+        worst = int(np.argmax(steepness))
+        assert steepness[worst] <= subject.lipschitz * (1 + 1e-9) + 1e-9, (points[:, worst], steepness[worst])
+        best = points[:, np.argsort(steepness)[-40:]]
+        moves = subject.scale * step * generator.normal(size=(len(points), 40, 5))
+        points = np.concatenate([best, (best[:, :, None] + moves).reshape(len(points), -1)], axis=1)
 
 
 @pytest.mark.parametrize("name", _BOUNDED)

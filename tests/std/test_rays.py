@@ -39,7 +39,9 @@ def _lines(subject: Subject, generator: np.random.Generator) -> tuple[Array, Arr
     return origin, d * 10.0 ** generator.uniform(-2, 2, _LINES)
 
 
-def _intervals(subject: Subject, o: Array, d: Array, grow: float, dtype: type[np.floating]) -> list[tuple[Array, Array]]:
+def _intervals(
+    subject: Subject, o: Array, d: Array, grow: float, dtype: type[np.floating]
+) -> list[tuple[Array, Array]]:
     graph, ray = subject.graph, subject.definition.claims.ray
     assert ray is not None
     found = ray(graph.input("o"), graph.input("d"), graph.input("grow", Type.FLOAT), subject.arguments)
