@@ -26,7 +26,6 @@ from sdfc.plan.view import CameraChange, uniforms_of
 from sdfc.scene.library import Library
 from sdfc.scene.model import Scene
 from sdfc.shape.graph import Shape
-from sdfc.shape.material import Material
 from sdfc.tracers import TRACERS
 
 Kind = Literal["sdf", "csg"]
@@ -181,13 +180,13 @@ def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:  # no
     try:
         with deep_recursion():
             lipschitz = Lipschitz(workshop.ranges, workshop.bounds)
-            prover = Prover(scene.values, workshop.bounds, lipschitz)
-            steps = prover.prove(root)
             setting = setting_of(scene, frame)
+            prover = Prover(scene.values, workshop.bounds, lipschitz, setting.unpainted)
+            steps = prover.prove(root)
             plan = Plan(
                 steps,
                 TRACERS[options.tracer],
-                _materials(prover, setting.unpainted),
+                tuple(dict.fromkeys(p.material for p in prover.parts)) or (setting.unpainted,),
                 prover.slopes(needed=TRACERS[options.tracer].needs_map),
                 frame.radius,
                 frame.centre,
@@ -196,11 +195,6 @@ def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:  # no
     except RecursionError as error:
         raise InternalError("the scene is nested too deeply to compile") from error
     return Compiled(scene, plan, setting, root, frame)
-
-
-def _materials(prover: Prover, unpainted: Material) -> tuple[Material, ...]:
-    found = dict.fromkeys(part.material or unpainted for part in prover.parts)
-    return tuple(found) or (unpainted,)
 
 
 __all__ = ["Compiled", "Kind", "Options", "SceneError", "compile_scene", "load", "normalise", "tracer_names"]

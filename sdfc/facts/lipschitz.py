@@ -11,7 +11,7 @@ from sdfc.facts.box import Box
 from sdfc.facts.ranges import Ranges
 from sdfc.field.graph import Type
 from sdfc.shape.definition import Exactness
-from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, children_of
+from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, children_of, topological
 from sdfc.shape.lower import lower
 from sdfc.shape.stretch import largest_stretch, smallest_stretch
 
@@ -29,6 +29,18 @@ class Lipschitz:
         if key not in self._made:
             self._made[key] = self._constant(shape, domain)
         return self._made[key]
+
+    def is_global(self, shape: Shape) -> bool:
+        """Whether every constant below was claimed: then it holds everywhere, not only in a box."""
+        return all(self._is_claimed(node) for node in topological(shape))
+
+    def _is_claimed(self, shape: Shape) -> bool:
+        match shape:
+            case Apply():
+                claims = shape.definition.claims
+                return claims.lipschitz is not None or claims.exactness is not Exactness.NONE
+            case _:
+                return True
 
     def _constant(self, shape: Shape, domain: Box) -> float:
         match shape:
@@ -78,6 +90,6 @@ class Lipschitz:
                 f"no bound of the slope of '{shape.definition.name}' could be found"
                 + (" over its box" if own.is_finite else ": it has no bounds"),
                 shape.span,
-                "claim one (`lipschitz 2`), or keep it in a box: `.bounded([-1, -1, -1], [1, 1, 1])` or `& box(...)`",
+                "claim one (`lipschitz 2`), or keep it in a box: `& box(size: [2, 2, 2])`",
             )
         return bound

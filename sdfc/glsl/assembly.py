@@ -80,15 +80,14 @@ class _Assembly:
 
     def _context(self) -> dict[str, object]:
         plan, tracer = self._plan, self._plan.tracer
-        trace = TraceText("", False, False)
+        trace, many = TraceText("", False, False), None
         if tracer.needs_steps:
-            trace = ProvenWriter(self._graph, self._functions, self._live).write(plan.root)
+            writer = ProvenWriter(self._graph, self._functions, self._live, list(plan.materials))
+            trace, many = writer.write(plan.root), writer.many
         has_map = tracer.needs_map or self._lit
         distance = DistanceWriter(self._graph, self._functions, self._live, plan.slopes)
         map_text = distance.write(plan.root) if has_map else ""
-        taken = [identifier(p.name) for p in self._setting.params]
-        materials, unpainted = list(plan.materials), self._setting.unpainted
-        surfaces = SurfaceWriter(self._graph, self._functions, self._live, materials, unpainted, taken)
+        surfaces = SurfaceWriter(self._graph, self._functions, self._live, list(plan.materials), many)
         surface = surfaces.write(plan.root)
         context: dict[str, object] = {
             "version": VERSION,

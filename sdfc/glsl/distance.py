@@ -11,7 +11,7 @@ from sdfc.glsl.body import Body, own_point
 from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
-from sdfc.plan.steps import All, Any, Ball, Blend, Closed, Part, Step, Tangent, Within
+from sdfc.plan.steps import All, Any, Ball, Blend, Closed, Many, Part, Step, Tangent, Within
 
 
 class DistanceWriter:
@@ -36,8 +36,10 @@ class DistanceWriter:
                 return self._value(step.part, body, step.inside)
             case Tangent() | Blend():
                 return self._value(step.part, body, True)
+            case Many():
+                return self._joined("min", step.members, body)
             case Within():
-                return self._within(step, body)
+                return self._within(step, body) if step.is_needed else self._fold(step.step, body)
             case Any():
                 return self._joined("min", step.steps, body)
             case All():
@@ -79,7 +81,7 @@ def _span(step: Step) -> Span | None:
     match step:
         case Closed() | Tangent() | Ball() | Blend():
             return step.part.span
-        case Within() | Any() | All():
+        case Within() | Any() | All() | Many():
             return None
         case _:
             assert_never(step)

@@ -55,7 +55,7 @@ class Functions:
         self._graph = graph
         self._lowering = lowering
         self._by_key: dict[tuple[object, ...], Function] = {}
-        self._names = Names(identifier(n) for n in taken)
+        self.names = Names(identifier(n) for n in taken)
 
     @property
     def all(self) -> tuple[Function, ...]:
@@ -77,7 +77,7 @@ class Functions:
             arguments, formal, label, parametric = (), (), name, shape
             key = (shape.id, role)
         if key not in self._by_key:
-            self._by_key[key] = self._made(parametric, role, self._names.fresh(label + role.value), formal)
+            self._by_key[key] = self._made(parametric, role, self.names.fresh(label + role.value), formal)
         return Call(self._by_key[key].name, arguments)
 
     def joined(self, blend: Apply) -> Call:
@@ -102,7 +102,7 @@ class Functions:
                 slopes = [directional(result, {a: one}), directional(result, {b: one})]
                 result = self._graph.vector(*slopes, result)
             formal = (("a", Type.FLOAT), ("b", Type.FLOAT), *((p.name, _TYPES[p.kind]) for p in definition.values))
-            self._by_key[key] = Function(self._names.fresh(definition.name + role.value), formal, result, definition.doc)
+            self._by_key[key] = Function(self.names.fresh(definition.name + role.value), formal, result, definition.doc)
         return Call(self._by_key[key].name, tuple(a for a in blend.arguments if isinstance(a, Expr)))
 
     def _input(self, name: str, kind: Kind) -> Expr:

@@ -11,12 +11,14 @@ from sdfc.glsl.body import Body, own_direction, own_point
 from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
+from sdfc.glsl.many import ManyWriter
 from sdfc.plan.steps import (
     All,
     Any,
     Ball,
     Blend,
     Closed,
+    Many,
     Part,
     Step,
     Tangent,
@@ -24,6 +26,7 @@ from sdfc.plan.steps import (
     is_closed,
     leaves_of,
 )
+from sdfc.shape.material import Material
 
 
 Names: TypeAlias = dict[tuple[int, bool], str]
@@ -41,11 +44,12 @@ class TraceText:
 class ProvenWriter:
     """Writes `solid_n`, `events` and `march` for one step tree."""
 
-    def __init__(self, graph: FieldGraph, functions: Functions, live: Live) -> None:
+    def __init__(self, graph: FieldGraph, functions: Functions, live: Live, materials: list[Material]) -> None:
         self._graph = graph
         self._functions = functions
         self._live = live
         self._blends = BlendWriter(graph, functions, live)
+        self.many = ManyWriter(graph, functions, live, materials)
         self._o, self._d, self._p = (graph.input(n) for n in "odp")
         self._texts: list[str] = []
         self._count = 0
@@ -58,7 +62,7 @@ class ProvenWriter:
             self._events(closed)
         if marched:
             self._march(marched[0] if len(marched) == 1 else Any(tuple(marched)))
-        return TraceText("\n".join([*self._blends.texts, *self._texts]), bool(closed), bool(marched))
+        return TraceText("\n".join([*self.many.texts, *self._blends.texts, *self._texts]), bool(closed), bool(marched))
 
     # events: hard CSG of closed-form intervals
 
@@ -70,6 +74,8 @@ class ProvenWriter:
                 case Closed(inside=True):
                     text = f"enter({self._interval_text(body, component.part)}, start)"
                     body.add(f"first = min(first, {text});", component.part.span)
+                case Many():
+                    self.many.write(component, body)
                 case _:
                     body.add(f"first = min(first, {self._solid(component)}(o, d, start));")
         body.add("return first;")
@@ -147,7 +153,7 @@ class ProvenWriter:
             case Any() | All():
                 for child in step.steps:
                     self._boxes(body, child)
-            case Closed() | Tangent() | Ball() | Blend():
+            case Closed() | Many() | Tangent() | Ball() | Blend():
                 pass
             case _:
                 assert_never(step)
@@ -187,7 +193,7 @@ class ProvenWriter:
                 return _chain("min", [self._start(s, names) for s in step.steps])
             case All():
                 return _chain("max", [self._start(s, names) for s in step.steps])
-            case Closed() | Tangent() | Ball() | Blend() | Any():
+            case Closed() | Many() | Tangent() | Ball() | Blend() | Any():
                 return "start"
             case _:
                 assert_never(step)
@@ -200,6 +206,8 @@ class ProvenWriter:
         match step:
             case Closed():
                 return f"{'enter' if step.inside else 'leave'}({names[id(step.part), step.inside]}, t)"
+            case Many():
+                raise AssertionError("many parts are members of the scene's union, which is solved by events")
             case Tangent():
                 value = self._blends.slope(body, step.part, (directions or {})[id(step.part)])
                 return f"tangent(t, {value}, eps)"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import assert_never
 
@@ -11,8 +10,9 @@ from sdfc.glsl.body import Body, own_point
 from sdfc.glsl.expression import type_name
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
-from sdfc.glsl.names import Names
-from sdfc.plan.steps import All, Any, Ball, Blend, BlendNode, BlendTree, BlendUnion, Closed, Part, Step, Tangent, Within
+from sdfc.glsl.many import ManyWriter
+from sdfc.plan.gather import is_translation
+from sdfc.plan.steps import All, Any, Ball, Blend, BlendNode, BlendTree, BlendUnion, Closed, Many, Part, Step, Tangent, Within
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
 
@@ -35,15 +35,20 @@ class SurfaceWriter:
     """Writes one scene's surface function."""
 
     def __init__(
-        self, graph: FieldGraph, functions: Functions, live: Live, materials: list[Material], unpainted: Material, taken: Iterable[str]
+        self,
+        graph: FieldGraph,
+        functions: Functions,
+        live: Live,
+        materials: list[Material],
+        many: ManyWriter | None,
     ) -> None:
         self._graph = graph
         self._functions = functions
         self._live = live
         self._materials = materials
-        self._unpainted = unpainted
-        names = Names(taken)
-        self._names = {id(m): names.fresh(f"{m.name}_material") for m in materials}
+        self._many = many  # None: nothing has recorded the nearest of many
+        self._names = {id(m): functions.names.fresh(f"{m.name}_material") for m in materials}
+        self._painted = False
         self._varying = [p for p in PROPERTIES if len({_property(m, p).id for m in materials}) > 1]
         self._p = graph.input("p")
         self._count = 0
@@ -69,6 +74,7 @@ class SurfaceWriter:
         ]
         for index, material in enumerate(self._materials):
             lines += self._constructor(index, material)
+        lines += self._choice() if self._painted else []
         return "\n".join(lines + (self._mixing() if self._blends else []))
 
     def _constructor(self, index: int, material: Material) -> list[str]:
@@ -82,6 +88,12 @@ class SurfaceWriter:
             "}",
             "",
         ]
+
+    def _choice(self) -> list[str]:
+        names = [self._names[id(m)] for m in self._materials]
+        chosen = [f"    if (material == {i}.0) s = {name}(field);" for i, name in enumerate(names) if i]
+        head = "Surface painted(vec4 field, float material) {"
+        return [head, f"    Surface s = {names[0]}(field);", *chosen, "    return s;", "}", ""]
 
     def _mixing(self) -> list[str]:
         mixed = ["field", "w.y > w.x ? b.material : a.material", *(f"mix(a.{p}, b.{p}, share)" for p in self._varying)]
@@ -112,6 +124,8 @@ class SurfaceWriter:
                 return self._leaf(step.part, body, step.inside, Role.SURFACE)
             case Tangent():
                 return self._leaf(step.part, body, True, Role.SURFACE)
+            case Many():
+                return self._nearest(step, body)
             case Blend():
                 return self._blend(step.tree, body)
             case Within():
@@ -134,17 +148,25 @@ class SurfaceWriter:
             body.add(f"{name} = {operation}({name}, {text});")
         return name
 
+    def _nearest(self, step: Many, body: Body) -> str:
+        if self._many is None:
+            return self._joined("nearer", step.members, body)
+        field = self._many.surface_text(step, body)
+        if len(self._materials) == 1:
+            return f"{self._names[id(self._materials[0])]}({field})"
+        self._painted = True
+        return f"painted({field}, {self._many.records[id(step)].material})"
+
     def _leaf(self, part: Part, body: Body, inside: bool, role: Role) -> str:
-        material = part.material or self._unpainted
         q = body.point(own_point(part.inverse, self._p), f"q_{part.name}")
         field = body.call(self._functions.of_part(part, role), [q])
-        if part.inverse is not None and not _is_translation(part.inverse):
+        if part.inverse is not None and not is_translation(part.inverse):
             name = f"g_{part.name}{'' if inside else '_cut'}"
             body.declare(Type.VEC4, name, field, part.span)
             field = body.text(self._turned(part, name))
         elif not (part.stretch.is_constant and part.stretch.number == 1.0):
             field = f"{body.text(part.stretch)} * {field}"
-        return f"{self._names[id(material)]}({'' if inside else '-'}{field})"
+        return f"{self._names[id(part.material)]}({'' if inside else '-'}{field})"
 
     def _turned(self, part: Part, name: str) -> Expr:
         """The gradient in the scene's space: A^T g for the map p -> A p + b to the part's own space."""
@@ -190,11 +212,3 @@ def _property(material: Material, name: str) -> Expr:
     value = getattr(material, name)
     assert isinstance(value, Expr)
     return value
-
-
-def _is_translation(matrix: Matrix) -> bool:
-    return all(
-        e.is_constant and e.number == (1.0 if i == j else 0.0)
-        for i, row in enumerate(matrix.linear)
-        for j, e in enumerate(row)
-    )

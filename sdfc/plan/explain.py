@@ -6,7 +6,7 @@ from typing import assert_never
 
 from sdfc.passes.own_origin import Frame
 from sdfc.plan.plan import Plan
-from sdfc.plan.steps import All, Any, Ball, Blend, Closed, Step, Tangent, Within, is_closed, leaves_of
+from sdfc.plan.steps import All, Any, Ball, Blend, Closed, Many, Step, Tangent, Within, is_closed, leaves_of
 from sdfc.scene.model import Scene
 
 
@@ -40,6 +40,8 @@ def _tree(step: Step, depth: int) -> list[str]:
         case Closed():
             side = "" if step.inside else "complement of "
             return [f"{pad}{side}{step.part.name} ({step.part.span}): closed form, {step.intervals} interval(s) a ray"]
+        case Many():
+            return [f"{pad}{len(step.members)} of {step.name}: closed form, 1 interval a ray; one line of GLSL each"]
         case Tangent():
             return [f"{pad}{step.part.name} ({step.part.span}): tangents, its function is convex"]
         case Ball():

@@ -13,6 +13,7 @@ from sdfc.facts.box import Box, everything
 from sdfc.facts.curvature import convex_shapes
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.field.graph import FieldGraph
+from sdfc.plan.gather import gathered
 from sdfc.plan.steps import (
     All,
     Any,
@@ -27,7 +28,7 @@ from sdfc.plan.steps import (
     Tangent,
     Within,
 )
-from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union
+from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, topological
 from sdfc.shape.lower import lower_ray
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
@@ -79,10 +80,11 @@ def unwrapped(shape: Shape) -> Leaf | None:
 class Prover:
     """Builds the step tree of one scene."""
 
-    def __init__(self, values: FieldGraph, bounds: Bounds, lipschitz: Lipschitz) -> None:
+    def __init__(self, values: FieldGraph, bounds: Bounds, lipschitz: Lipschitz, unpainted: Material) -> None:
         self._values = values
         self._bounds = bounds
         self._lipschitz = lipschitz
+        self._unpainted = unpainted
         self._names: Counter[str] = Counter()
         self._parts: dict[tuple[int, int], Part] = {}
         self._convex: frozenset[int] = frozenset()
@@ -109,7 +111,7 @@ class Prover:
 
     def prove(self, root: Shape) -> Step:
         self._convex = convex_shapes(root)
-        return self._step(root, everything())
+        return gathered(self._step(root, everything()))
 
     def _step(self, shape: Shape, domain: Box) -> Step:
         match shape:
@@ -142,15 +144,18 @@ class Prover:
         step: Step = self._ball(part, leaf, where)
         if tree is not None:
             step = Blend(part, tree, self._lipschitz.constant(leaf.placed, where))
-        return self._within(where, step) if where.is_finite and leaf.inside else step
+        needed = not self._lipschitz.is_global(leaf.placed)
+        if needed and not where.is_finite:
+            return step  # found over everything: it holds everywhere
+        return self._within(where, step, needed) if where.is_finite and (leaf.inside or needed) else step
 
     def _ball(self, part: Part, leaf: Leaf, where: Box) -> Ball:
         return Ball(part, self._lipschitz.constant(leaf.placed, where), leaf.inside)
 
-    def _within(self, box: Box, step: Step) -> Within:
+    def _within(self, box: Box, step: Step, needed: bool) -> Within:
         self._boxes += 1
         # a little wider than the solid: its boundary belongs to it
-        return Within(f"bounds_{self._boxes}", box.widened(1e-5 * max(box.radius, 1e-3)), step)
+        return Within(f"bounds_{self._boxes}", box.widened(1e-5 * max(box.radius, 1e-3)), step, needed)
 
     def _is_tangent(self, shape: Apply) -> bool:
         claims = shape.definition.claims
@@ -201,7 +206,8 @@ class Prover:
             stretch = smallest_stretch(leaf.affine.forward)
             own_grow = largest_stretch(inverse)
         box = self._bounds.box(leaf.placed)
-        return Part(name, leaf.shape, inverse, stretch, own_grow, leaf.material, box, leaf.shape.span)
+        material = leaf.material or _first_material(leaf.shape) or self._unpainted
+        return Part(name, leaf.shape, inverse, stretch, own_grow, material, box, leaf.shape.span)
 
     def _intervals(self, shape: Apply) -> int:
         """How many intervals the primitive's ray claim gives: the same for all uses of the definition."""
@@ -213,6 +219,17 @@ class Prover:
     def _counted(self, shape: Apply) -> int:
         o, d = self._values.input("o"), self._values.input("d")
         return len(lower_ray(shape, o, d, self._values.constant(0.0)))
+
+
+def _first_material(shape: Shape) -> Material | None:
+    """The material of the first painted part of an operation."""
+    for node in topological(shape):
+        match node:
+            case Paint():
+                return node.material
+            case _:
+                pass
+    return None
 
 
 def _any(steps: list[Step]) -> Step:

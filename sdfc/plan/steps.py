@@ -31,7 +31,7 @@ class Part:
     inverse: Matrix | None
     stretch: Expr
     own_grow: Expr
-    material: Material | None
+    material: Material
     box: Box
     span: Span
 
@@ -43,6 +43,17 @@ class Closed:
     part: Part
     intervals: int
     inside: bool = True  # False: its complement
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Many:
+    """Members of the scene's union that are alike but for place, size and material: one line of GLSL each.
+
+    All are Closed, of one definition, moved only, with one interval a ray.
+    """
+
+    name: str
+    members: tuple[Closed, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,6 +107,7 @@ class Within:
     name: str
     box: Box
     step: Step
+    is_needed: bool  # whether the step's constant holds only inside
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,13 +120,13 @@ class All:
     steps: tuple[Step, ...]
 
 
-Step: TypeAlias = Closed | Tangent | Ball | Blend | Within | Any | All
+Step: TypeAlias = Closed | Many | Tangent | Ball | Blend | Within | Any | All
 
 
 def is_closed(step: Step) -> bool:
     """Whether the whole tree is events: solved without marching."""
     match step:
-        case Closed():
+        case Closed() | Many():
             return True
         case Tangent() | Ball() | Blend() | Within():
             return False
@@ -127,6 +139,8 @@ def leaves_of(step: Step) -> list[Closed | Tangent | Ball | Blend]:
     match step:
         case Closed() | Tangent() | Ball() | Blend():
             return [step]
+        case Many():
+            return list(step.members)
         case Within():
             return leaves_of(step.step)
         case Any() | All():

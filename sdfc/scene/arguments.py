@@ -51,7 +51,12 @@ def _evaluated(argument: tree.Argument, names: Names) -> list[Given]:
 
 
 def match(
-    what: str, parameters: Sequence[str], given: Sequence[Given], span: Span, most_positional: int | None = None
+    what: str,
+    parameters: Sequence[str],
+    given: Sequence[Given],
+    span: Span,
+    most_positional: int | None = None,
+    word: str = "parameter",
 ) -> dict[str, Given]:
     """Arguments by parameter; those without a name go to the first parameters. All errors at once."""
     problems = Problems()
@@ -67,7 +72,7 @@ def match(
         name = argument.name.text
         if name not in parameters:
             hint = did_you_mean(name, parameters) or _listed(parameters)
-            problems.add(Diagnostic(f"{what} has no parameter '{name}'", argument.name.span, hint))
+            problems.add(Diagnostic(f"{what} has no {word} '{name}'", argument.name.span, hint))
         elif name in matched:
             problems.add(Diagnostic(f"{what} is given '{name}' twice", argument.name.span))
         matched.setdefault(name, argument)

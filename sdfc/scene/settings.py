@@ -169,7 +169,7 @@ def sky(node: tree.SkyDeclaration, names: Names) -> Sky:
 
 def _read(what: str, table: Mapping[str, _Row], given: Sequence[Given], names: Names, span: Span) -> dict[str, Expr]:
     """Every property that was given or has a default, in the table's order."""
-    matched = match(what, list(table), given, span, 0)
+    matched = match(what, list(table), given, span, 0, "property")
     graph: FieldGraph = names.context.graph
     problems = Problems()
     read: dict[str, Expr] = {}

@@ -83,10 +83,13 @@ class _Place:
 def explain(source: Source, start: int, end: int, error: UnexpectedInput) -> Diagnostic:
     """One diagnostic for what the parser could not go on from."""
     place = _place(source, start, end, error)
-    unbalanced = _unbalanced(source, start, place.span.start if place.found else end, place)
+    if source.text.startswith("/*", place.span.start):
+        opening = Span(source, place.span.start, place.span.start + 2)
+        return Diagnostic("this comment is never closed", opening, "end it with '*/'")
+    unbalanced = _unbalanced(source, start, end, place)
     if unbalanced is not None:
         return unbalanced
-    for rule in (_slip_of_character, _slip_of_pair, _slip_of_name, _slip_of_separator, _slip_at_top):
+    for rule in (_slip_of_habit, _slip_of_character, _slip_of_pair, _slip_of_name, _slip_of_separator, _slip_at_top):
         found = rule(place)
         if found is not None:
             return Diagnostic(found[0], place.span, found[1])
@@ -140,33 +143,38 @@ def _expected(expected: frozenset[str]) -> str:
     return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " or " + words[-1]
 
 
-def _unbalanced(source: Source, start: int, stop: int, place: _Place) -> Diagnostic | None:
-    """The bracket that is not closed, or that closes nothing, where one explains the error."""
+_BRACKETS = re.compile(r'//[^\n]*|/\*.*?(?:\*/|\Z)|"[^"\n]*"?|[()\[\]{}]', re.DOTALL)
+
+
+def _open_brackets(text: str) -> list[tuple[str, int]]:
+    """The brackets that are open at the end of a text, outermost first, with their offsets."""
     stack: list[tuple[str, int]] = []
-    for match in re.finditer(r'//[^\n]*|/\*.*?(?:\*/|\Z)|"[^"\n]*"?|[()\[\]{}]', source.text[start:stop], re.DOTALL):
-        text = match.group(0)
-        if text in _OPENING:
-            stack.append((text, start + match.start()))
-        elif text in _CLOSING and stack and stack[-1][0] == _CLOSING[text]:
+    for match in _BRACKETS.finditer(text):
+        bracket = match.group(0)
+        if bracket in _OPENING:
+            stack.append((bracket, match.start()))
+        elif bracket in _CLOSING and stack and stack[-1][0] == _CLOSING[bracket]:
             stack.pop()
-        elif text.startswith("/*") and not text.endswith("*/"):
-            at = start + match.start()
-            return Diagnostic("this comment is never closed", Span(source, at, at + 2), "end it with '*/'")
+    return stack
+
+
+def _unbalanced(source: Source, start: int, end: int, place: _Place) -> Diagnostic | None:
+    """The bracket that is not closed, or that closes nothing, where one explains the error."""
+    stack = _open_brackets(source.text[start : place.span.start if place.found else end])
     if place.found in _CLOSING:
-        if not stack:
+        if _CLOSING[place.found] not in [bracket for bracket, _ in stack]:
             return Diagnostic(f"'{place.found}' closes nothing", place.span, "is it one too many?")
         bracket, at = stack[-1]
         if _OPENING[bracket] != place.found:
-            line, _ = source.position(at)
+            line, _ = source.position(start + at)
             message = f"'{place.found}' found, but the '{bracket}' of line {line} is still open"
             return Diagnostic(message, place.span, f"a '{_OPENING[bracket]}' is missing before this")
         return None
-    inside = place.terminal == "$END" or place.terminal in {s.upper() for s in STATEMENTS}
-    if stack and inside:
+    at_statement = place.terminal in {s.upper() for s in STATEMENTS}
+    if stack and (place.terminal == "$END" or (at_statement and _open_brackets(source.text[start:end]))):
         bracket, at = stack[-1]
-        return Diagnostic(
-            f"this '{bracket}' is never closed", Span(source, at, at + 1), f"a '{_OPENING[bracket]}' is missing"
-        )
+        span = Span(source, start + at, start + at + 1)
+        return Diagnostic(f"this '{bracket}' is never closed", span, f"a '{_OPENING[bracket]}' is missing")
     return None
 
 
@@ -197,6 +205,21 @@ def _slip_of_name(place: _Place) -> _Slip | None:
     return None
 
 
+def _slip_of_habit(place: _Place) -> _Slip | None:
+    """What other languages write so."""
+    found = place.found
+    after = place.span.source.text[place.span.end : place.span.end + 20].lstrip()
+    if found == "(" and "EQUALS" in place.expected:
+        return f"'{place.before}' is a word of the language and cannot be a name here", None
+    if found == "(" and place.before == "for":
+        return "a loop has no parentheses", "write for i in 0..3: …"
+    if found == "{" and "EQUALS" in place.expected:
+        return "expected '=', found '{'", "the body of a function is one expression: def f(x) = …"
+    if "IMPORT" in place.expected and place.terminal == "NAME" and re.match(r"=(?!=)", after):
+        return f"expected a declaration, found '{found}'", f"write def {found} = …"
+    return None
+
+
 def _slip_of_separator(place: _Place) -> _Slip | None:
     expected, found = place.expected, place.found
     if found == "=" and "COLON" in expected:
@@ -209,6 +232,10 @@ def _slip_of_separator(place: _Place) -> _Slip | None:
         return f"expected 'else', found {_found(place)}", "every 'if' needs both: if condition then a else b"
     if "THEN" in expected:
         return f"expected 'then', found {_found(place)}", "write if condition then a else b"
+    if place.terminal == "COMPARISON":
+        return f"unexpected '{found}'", "compare two values at a time, and join the comparisons with 'and'"
+    if expected == {"STRING"}:
+        return f"expected a string, found {_found(place)}", 'names of files stand in quotes: "file.sdf"'
     if "COMMA" in expected and (place.terminal in _VALUES or place.terminal in ("FOR", "IF")):
         return f"expected ',' before '{found}'", "a comma is missing"
     return None
