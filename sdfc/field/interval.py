@@ -185,7 +185,7 @@ class IntervalEvaluator:
                     arguments = [values[a.id] for a in node.args]
                     value = RULES[node.op](node, arguments)
                     if sides is not None and node.op in JUMPS:
-                        value = sides.take(node.op, arguments, value)
+                        value = sides.take(node, arguments, value)
                     slope = None
                     if seeds is not None:
                         moving = [slopes[a.id] for a in node.args]

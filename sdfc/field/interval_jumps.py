@@ -16,31 +16,48 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdfc.field import interval_rules as rules
-from sdfc.field.graph import Op
+from sdfc.field.graph import Expr, Op
 from sdfc.field.interval_rules import Interval
 
 Mask: TypeAlias = NDArray[np.bool_]
 # (arguments, the plain result) -> (the lower side, the upper side, where it is one of these two)
 SidesRule: TypeAlias = Callable[[Sequence[Interval], Interval], tuple[Interval, Interval, Mask]]
 
+ORDERED = frozenset({Op.LESS, Op.LESS_EQUAL})
 MAX_JUMPS = 3  # undecided operations at once that are run through, so 8 combinations
 
 
 class Sides:
     """One combination: the i-th undecided operation of each point takes its upper side where bit i is set.
 
-    An operation with more than two sides, and what is undecided after MAX_JUMPS others, keeps the hull.
+    An operation with more than two sides, and what is undecided after MAX_JUMPS others, keeps the hull. Comparisons of
+    the same two values agree: a < b is true where b <= a is false (a polygon's edges meet at such a pair).
     """
 
     def __init__(self, combination: int, points: int) -> None:
         self._combination = combination
         self.jumps = np.zeros(points, np.int64)  # operations of each point that took a side so far
+        # (a, b) -> the side that a < b took, and where it took one
+        self._compared: dict[tuple[int, ...], tuple[Interval, Mask]] = {}
 
-    def take(self, op: Op, args: Sequence[Interval], result: Interval) -> Interval:
+    def take(self, node: Expr, args: Sequence[Interval], result: Interval) -> Interval:
         """The side of `result` that this combination takes."""
-        lower, upper, undecided = JUMPS[op](args, result)
+        lower, upper, undecided = JUMPS[node.op](args, result)
         if not undecided.any():
             return result
+        pair, before = tuple(a.id for a in node.args), np.zeros_like(undecided)
+        if node.op in ORDERED and pair in self._compared:
+            known, before = self._compared[pair]
+            result = Interval(np.where(before, known.lo, result.lo), np.where(before, known.hi, result.hi))
+            undecided = undecided & ~before
+        side, taken = self._side(lower, upper, undecided, result)
+        if node.op in ORDERED:
+            # the order of two values is one decision, whoever asks and which way round
+            self._compared[pair] = side, taken | before
+            self._compared[pair[::-1]] = rules.complement(side), taken | before
+        return side
+
+    def _side(self, lower: Interval, upper: Interval, undecided: Mask, result: Interval) -> tuple[Interval, Mask]:
         # components one by one: each may jump on its own
         rows = np.atleast_2d(undecided).astype(np.int64)
         position = self.jumps + np.cumsum(rows, axis=0) - rows
@@ -52,7 +69,7 @@ class Sides:
         lo = np.where(taken, np.where(up, upper.lo, lower.lo), result.lo)
         hi = np.where(taken, np.where(up, upper.hi, lower.hi), result.hi)
         # either side is within the plain result, which may know more: mod's range, the half turn
-        return Interval(np.maximum(lo, result.lo), np.minimum(hi, result.hi))
+        return Interval(np.maximum(lo, result.lo), np.minimum(hi, result.hi)), taken
 
 
 def _steps(args: Sequence[Interval], result: Interval) -> tuple[Interval, Interval, Mask]:

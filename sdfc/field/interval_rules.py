@@ -39,8 +39,7 @@ Rule: TypeAlias = Callable[[Expr, Sequence[Interval]], Interval]
 
 
 def down(x: Array, ulps: int = 1) -> Array:
-    """A number below every real that rounds to within `ulps` of x. A lower end +inf becomes the largest float: an
-    overflow is not infinite."""
+    """A number below every real that rounds to within `ulps` of x; below +inf the largest float (an overflow)."""
     result = x * (1.0 - ulps * EPSILON)
     np.minimum(result, x * (1.0 + ulps * EPSILON), out=result)
     np.minimum(result, LARGEST, out=result)
@@ -313,6 +312,11 @@ def equal(a: Interval, b: Interval) -> Interval:
     return _truth((a.lo == a.hi) & (b.lo == b.hi) & (a.lo == b.lo), ~((a.hi < b.lo) | (b.hi < a.lo)))
 
 
+def complement(a: Interval) -> Interval:
+    """not a."""
+    return Interval(1.0 - a.hi, 1.0 - a.lo)
+
+
 def select(condition: Interval, then: Interval, otherwise: Interval) -> Interval:
     """The chosen side, or the hull of both."""
     both = hull(then, otherwise)
@@ -344,10 +348,6 @@ def _monotone(function: Callable[[Array], Array]) -> Rule:
     return lambda _, a: Interval(function(a[0].lo), function(a[0].hi))
 
 
-def _round(_: Expr, args: Sequence[Interval]) -> Interval:
-    return Interval(np.floor(down(args[0].lo + 0.5)), np.floor(up(args[0].hi + 0.5)))
-
-
 def _multiply(node: Expr, args: Sequence[Interval]) -> Interval:
     return squared(args[0]) if node.args[0] is node.args[1] else multiplied(args[0], args[1])
 
@@ -370,7 +370,7 @@ RULES: dict[Op, Rule] = {
     Op.ABS: lambda _, a: magnitude(a[0]),
     Op.SIGN: _monotone(np.sign),
     Op.FLOOR: _monotone(np.floor),
-    Op.ROUND: _round,
+    Op.ROUND: lambda _, a: Interval(np.floor(down(a[0].lo + 0.5)), np.floor(up(a[0].hi + 0.5))),
     Op.SQRT: lambda _, a: root(a[0]),
     Op.SIN: lambda _, a: sine(a[0]),
     Op.COS: lambda _, a: cosine(a[0]),
@@ -394,6 +394,6 @@ RULES: dict[Op, Rule] = {
     Op.EQUAL: lambda _, a: equal(a[0], a[1]),
     Op.AND: lambda _, a: Interval(np.minimum(a[0].lo, a[1].lo), np.minimum(a[0].hi, a[1].hi)),
     Op.OR: lambda _, a: Interval(np.maximum(a[0].lo, a[1].lo), np.maximum(a[0].hi, a[1].hi)),
-    Op.NOT: lambda _, a: Interval(1.0 - a[0].hi, 1.0 - a[0].lo),
+    Op.NOT: lambda _, a: complement(a[0]),
     Op.SELECT: lambda _, a: select(a[0], a[1], a[2]),
 }

@@ -15,6 +15,7 @@ from sdfc.glsl.expression import literal, print_function, type_name
 from sdfc.glsl.functions import Functions
 from sdfc.glsl.light import LightWriter
 from sdfc.glsl.live import Live
+from sdfc.glsl.many import ManyWriter
 from sdfc.glsl.names import identifier
 from sdfc.glsl.proven import ProvenWriter, TraceText
 from sdfc.glsl.surface import SurfaceWriter
@@ -80,14 +81,15 @@ class _Assembly:
 
     def _context(self) -> dict[str, object]:
         plan, tracer = self._plan, self._plan.tracer
-        trace, many = TraceText("", False, False), None
+        trace = TraceText("", False, False)
+        many = ManyWriter(self._graph, self._functions, self._live, plan.materials)
         if tracer.needs_steps:
-            writer = ProvenWriter(self._graph, self._functions, self._live, list(plan.materials))
-            trace, many = writer.write(plan.root), writer.many
+            trace = ProvenWriter(self._graph, self._functions, self._live, many).write(plan.root)
         has_map = tracer.needs_map or self._lit
-        distance = DistanceWriter(self._graph, self._functions, self._live, plan.slopes)
+        distance = DistanceWriter(self._graph, self._functions, self._live, plan.slopes, many)
         map_text = distance.write(plan.root) if has_map else ""
-        surfaces = SurfaceWriter(self._graph, self._functions, self._live, list(plan.materials), many)
+        recorded = many if tracer.needs_steps else None
+        surfaces = SurfaceWriter(self._graph, self._functions, self._live, plan.materials, recorded)
         surface = surfaces.write(plan.root)
         context: dict[str, object] = {
             "version": VERSION,
@@ -106,6 +108,7 @@ class _Assembly:
             "needs_marching": trace.march or tracer.needs_map,
             "needs_map_library": has_map and "box_distance" in map_text,
             "map": map_text,
+            "tables": "\n".join(many.tables),
             "trace": trace,
             "tracer_template": tracer.template,
             "surface": surface,
@@ -148,7 +151,8 @@ class _Assembly:
         """So many marching steps a ray that all loops of an invocation stay below llvmpipe's silent limit."""
         blends = sum(isinstance(leaf, Blend) for leaf in leaves_of(self._plan.root))
         rays = 1 + (len(self._setting.lights) if self._lit else 0)
-        free = MOST_LOOPS // rays - 2 * self._plan.events
+        taps = 4 if self._lit else 0
+        free = (MOST_LOOPS - (rays + taps) * self._plan.rows) // rays - 2 * self._plan.events
         return max(16, min(2048, free // (1 + 5 * blends)))
 
     def _header(self) -> list[str]:

@@ -11,16 +11,20 @@ from sdfc.glsl.body import Body, own_point
 from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
+from sdfc.glsl.many import ManyWriter
 from sdfc.plan.steps import All, Any, Ball, Blend, Closed, Many, Part, Step, Tangent, Within
 
 
 class DistanceWriter:
     """Writes one scene's distance, as a chain of statements, one a part."""
 
-    def __init__(self, graph: FieldGraph, functions: Functions, live: Live, slopes: dict[int, float]) -> None:
+    def __init__(
+        self, graph: FieldGraph, functions: Functions, live: Live, slopes: dict[int, float], many: ManyWriter
+    ) -> None:
         self._graph = graph
         self._functions = functions
         self._live = live
+        self._many = many
         self._slopes = slopes  # the Lipschitz constant of each part's formula, by id
         self._count = 0
 
@@ -37,7 +41,9 @@ class DistanceWriter:
             case Tangent() | Blend():
                 return self._value(step.part, body, True)
             case Many():
-                return self._joined("min", step.members, body)
+                self._count += 1
+                self._many.value(step, body, f"d{self._count}")
+                return f"d{self._count}"
             case Within():
                 return self._within(step, body) if step.is_needed else self._fold(step.step, body)
             case Any():
@@ -52,7 +58,8 @@ class DistanceWriter:
             return "FAR"
         self._count += 1
         name = f"d{self._count}"
-        body.add(f"float {name} = {self._fold(steps[0], body)};", _span(steps[0]))
+        first = self._fold(steps[0], body)
+        body.add(f"float {name} = {first};", _span(steps[0]))
         for step in steps[1:]:
             text = self._fold(step, body)
             body.add(f"{name} = {operation}({name}, {text});", _span(step))

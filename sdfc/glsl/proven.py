@@ -26,7 +26,6 @@ from sdfc.plan.steps import (
     is_closed,
     leaves_of,
 )
-from sdfc.shape.material import Material
 
 
 Names: TypeAlias = dict[tuple[int, bool], str]
@@ -44,12 +43,12 @@ class TraceText:
 class ProvenWriter:
     """Writes `solid_n`, `events` and `march` for one step tree."""
 
-    def __init__(self, graph: FieldGraph, functions: Functions, live: Live, materials: list[Material]) -> None:
+    def __init__(self, graph: FieldGraph, functions: Functions, live: Live, many: ManyWriter) -> None:
         self._graph = graph
         self._functions = functions
         self._live = live
         self._blends = BlendWriter(graph, functions, live)
-        self.many = ManyWriter(graph, functions, live, materials)
+        self._many = many
         self._o, self._d, self._p = (graph.input(n) for n in "odp")
         self._texts: list[str] = []
         self._count = 0
@@ -62,7 +61,7 @@ class ProvenWriter:
             self._events(closed)
         if marched:
             self._march(marched[0] if len(marched) == 1 else Any(tuple(marched)))
-        return TraceText("\n".join([*self.many.texts, *self._blends.texts, *self._texts]), bool(closed), bool(marched))
+        return TraceText("\n".join([*self._many.meetings, *self._blends.texts, *self._texts]), bool(closed), bool(marched))
 
     # events: hard CSG of closed-form intervals
 
@@ -75,7 +74,7 @@ class ProvenWriter:
                     text = f"enter({self._interval_text(body, component.part)}, start)"
                     body.add(f"first = min(first, {text});", component.part.span)
                 case Many():
-                    self.many.write(component, body)
+                    self._many.meet(component, body)
                 case _:
                     body.add(f"first = min(first, {self._solid(component)}(o, d, start));")
         body.add("return first;")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import assert_never
 
@@ -39,13 +40,13 @@ class SurfaceWriter:
         graph: FieldGraph,
         functions: Functions,
         live: Live,
-        materials: list[Material],
+        materials: Sequence[Material],
         many: ManyWriter | None,
     ) -> None:
         self._graph = graph
         self._functions = functions
         self._live = live
-        self._materials = materials
+        self._materials = list(materials)
         self._many = many  # None: nothing has recorded the nearest of many
         self._names = {id(m): functions.names.fresh(f"{m.name}_material") for m in materials}
         self._painted = False
@@ -151,11 +152,11 @@ class SurfaceWriter:
     def _nearest(self, step: Many, body: Body) -> str:
         if self._many is None:
             return self._joined("nearer", step.members, body)
-        field = self._many.surface_text(step, body)
+        field = self._many.surface(step, body)
         if len(self._materials) == 1:
             return f"{self._names[id(self._materials[0])]}({field})"
         self._painted = True
-        return f"painted({field}, {self._many.records[id(step)].material})"
+        return f"painted({field}, {self._many.record(step).material})"
 
     def _leaf(self, part: Part, body: Body, inside: bool, role: Role) -> str:
         q = body.point(own_point(part.inverse, self._p), f"q_{part.name}")

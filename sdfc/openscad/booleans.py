@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from sdfc.diagnostics import scene_error
 from sdfc.openscad import plane
 from sdfc.openscad.colors import material_of
-from sdfc.openscad.generators import Map3, Mapped, Together, generators, moved, refused
+from sdfc.openscad.generators import Mapped, Together, generators, moved, refused
 from sdfc.openscad.invocation import Invocation
 from sdfc.openscad.part import Flat, Part, Solid
 from sdfc.openscad.refusal import RefusalError
+from sdfc.openscad.space import Map3
 
 SINGULAR = 1e-9  # of the product of the columns' lengths
 
@@ -76,9 +78,10 @@ def multmatrix(m: Invocation) -> Part | None:
 
 
 def _matrix(m: Invocation) -> Map3:
-    rows = m.points("m", 4)[:3]
+    expected = "a matrix: 4 rows, each of 4 finite numbers"
+    rows = m.points("m", 4, expected)[:3]
     if len(rows) < 3:
-        raise m.wrong("m", "a matrix of 4 rows")
+        raise m.wrong("m", expected)
     return tuple((row[0], row[1], row[2], row[3]) for row in rows)
 
 
@@ -95,7 +98,7 @@ def _moved(m: Invocation, part: Part, move: Map3) -> Part:
             return Solid(shape, Mapped(lambda g: (moved(move, g),), part.hull), part.is_convex)
 
 
-def _is_singular(rows: list[tuple[float, ...]]) -> bool:
+def _is_singular(rows: Sequence[Sequence[float]]) -> bool:
     lengths = [math.hypot(*column) for column in zip(*rows, strict=True)]
     if 0.0 in lengths:
         return True

@@ -6,15 +6,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from sdfc.diagnostics import Diagnostic, InternalError, Source, Span
-from sdfc.field.graph import Expr, FieldGraph, Operand
-from sdfc.openscad.generators import Map3
-from sdfc.openscad.polytope import Plane, Point
+from sdfc.field.graph import Expr, FieldGraph
+from sdfc.openscad import space
+from sdfc.openscad.polytope import Plane
+from sdfc.openscad.refusal import RefusalError
+from sdfc.openscad.space import Map3, Point
 from sdfc.scene.library import Library
 from sdfc.shape.definition import Argument
 from sdfc.shape.graph import Affine, Shape, ShapeGraph
 from sdfc.shape.material import Material
-from sdfc.shape.matrix import inverse, matrix
+from sdfc.shape.matrix import Matrix
 
+LARGEST = 1e15
 Y_TO_Z: Map3 = ((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, -1.0, 0.0), (0.0, 1.0, 0.0, 0.0))
 
 
@@ -57,13 +60,25 @@ class Context:
 
     def moved(self, move: Map3, child: Shape, span: Span) -> Shape:
         """The child under an affine map; a map of a map is one, and the identity none."""
-        if move == ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0)):
-            return child
-        rows: list[list[Operand]] = [list(row[:3]) for row in move]
-        forward = matrix(self.values, rows, [row[3] for row in move])
         if isinstance(child, Affine):
-            forward, child = forward.after(child.forward), child.child
-        return self.shapes.affine(forward, inverse(forward), child, span)
+            first = child.forward
+            rows = [
+                (*(e.number for e in row), shift.number) for row, shift in zip(first.linear, first.offset, strict=True)
+            ]
+            move, child = space.after(move, rows), child.child
+        if move == space.IDENTITY:
+            return child
+        back = space.inverse(move)
+        if not all(abs(value) <= LARGEST for row in (*move, *back) for value in row):  # also what is not a number
+            hint = f"the entries of a matrix and of its inverse go to {LARGEST:g}"
+            raise RefusalError("this is moved or scaled too far", hint)
+        return self.shapes.affine(self._matrix(move), self._matrix(back), child, span)
+
+    def _matrix(self, move: Map3) -> Matrix:
+        constant = self.values.constant
+        a, b, c = ((constant(row[0]), constant(row[1]), constant(row[2])) for row in move)
+        x, y, z = (constant(row[3]) for row in move)
+        return Matrix((a, b, c), (x, y, z))
 
     def raised(self, child: Shape, height: float, span: Span) -> Shape:
         """The child, made along y, stood up along z and moved up."""
@@ -75,7 +90,7 @@ class Context:
         size = [b - a for a, b in zip(lo, hi, strict=True)]
         x, y, z = (0.5 * (a + b) for a, b in zip(lo, hi, strict=True))
         shape = self.apply("box", span, size=self.vector(size))
-        return self.moved(((1, 0, 0, x), (0, 1, 0, y), (0, 0, 1, z)), shape, span)
+        return self.moved(space.translation((x, y, z)), shape, span)
 
     def planes(self, planes: Sequence[Plane], span: Span) -> Shape:
         """All that is under every plane; it may have no end."""

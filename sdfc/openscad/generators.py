@@ -7,12 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias, assert_never
 
-from sdfc.openscad.polytope import Point
 from sdfc.openscad.refusal import RefusalError
-
-Map3: TypeAlias = tuple[tuple[float, float, float, float], ...]  # three rows: linear part, offset
-
-SIMILAR = 1e-4  # relative: the matrices of a .csg file have six digits
+from sdfc.openscad.space import SIMILAR, Map3, Point, cross, direction, dot, frame, moved_point, norm, similarity
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,49 +99,9 @@ def moved(move: Map3, generator: Generator) -> Generator:
 
 def _moved_disc(move: Map3, disc: Generator, center: Point, axis: Point) -> Generator:
     u, v = frame(axis)
-    a, b = _direction(move, u), _direction(move, v)
-    if abs(_norm(a) - _norm(b)) > SIMILAR * _norm(a) or abs(_dot(a, b)) > SIMILAR * _norm(a) * _norm(b):
+    a, b = direction(move, u), direction(move, v)
+    if abs(norm(a) - norm(b)) > SIMILAR * norm(a) or abs(dot(a, b)) > SIMILAR * norm(a) * norm(b):
         raise RefusalError("the hull of a stretched disc has no exact form")
     normal = cross(a, b)
-    size = _norm(normal)
+    size = norm(normal)
     return Generator(center, disc.radius * math.sqrt(size), (normal[0] / size, normal[1] / size, normal[2] / size))
-
-
-def moved_point(move: Map3, p: Point) -> Point:
-    x, y, z = (r[0] * p[0] + r[1] * p[1] + r[2] * p[2] + r[3] for r in move)
-    return x, y, z
-
-
-def _direction(move: Map3, p: Point) -> Point:
-    x, y, z = (r[0] * p[0] + r[1] * p[1] + r[2] * p[2] for r in move)
-    return x, y, z
-
-
-def similarity(move: Map3) -> float | None:
-    """The factor of a map that keeps angles; None for any other."""
-    columns = [(move[0][j], move[1][j], move[2][j]) for j in range(3)]
-    factor = abs(_dot(columns[0], cross(columns[1], columns[2]))) ** (1.0 / 3.0)
-    skew = [abs(_norm(c) - factor) * factor for c in columns]
-    skew += [abs(_dot(columns[i], columns[(i + 1) % 3])) for i in range(3)]
-    return factor if max(skew) <= SIMILAR * factor * factor else None
-
-
-def frame(axis: Point) -> tuple[Point, Point]:
-    """Two unit vectors that make a right-handed frame with a unit axis."""
-    helper = (1.0, 0.0, 0.0) if abs(axis[0]) < 0.6 else (0.0, 1.0, 0.0)
-    u = cross(helper, axis)
-    size = _norm(u)
-    u = (u[0] / size, u[1] / size, u[2] / size)
-    return u, cross(axis, u)
-
-
-def cross(a: Point, b: Point) -> Point:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-def _dot(a: Point, b: Point) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _norm(a: Point) -> float:
-    return math.hypot(*a)

@@ -7,15 +7,15 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from sdfc.openscad import outline, plane, polytope, rounded
-from sdfc.openscad.generators import Generator, Spanned, frame, generators, moved_point
+from sdfc.openscad.generators import Generator, Spanned, generators
 from sdfc.openscad.invocation import Invocation
 from sdfc.openscad.lathe import Lathe
 from sdfc.openscad.outline import Point2
 from sdfc.openscad.part import Flat, Part, Solid
 from sdfc.openscad.plane import Disc, Joined, Plane, Polygon
-from sdfc.openscad.polytope import Point
 from sdfc.openscad.refusal import RefusalError
 from sdfc.openscad.solids import points_hull
+from sdfc.openscad.space import Point, frame, moved_point
 from sdfc.openscad.tower import Tower
 from sdfc.shape.graph import Shape
 

@@ -48,8 +48,11 @@ class Invocation:
 
     def wrong(self, name: str, expected: str) -> SceneError:
         found = self.argument(name)
-        place = self.span if found is None else self.place(found)
-        return scene_error(f"`{name}` of `{self.call.name}` must be {expected}", place)
+        if found is None:
+            return scene_error(f"`{self.call.name}` needs `{name}`: {expected}", self.span)
+        if found.name is None:
+            return scene_error(f"`{self.call.name}` takes {expected}", self.place(found))
+        return scene_error(f"`{name}` of `{self.call.name}` must be {expected}", self.place(found))
 
     def number(self, name: str, default: float) -> float:
         """May be infinite or not a number, as OpenSCAD writes them."""
@@ -84,14 +87,14 @@ class Invocation:
             case _:
                 raise self.wrong(name, f"a number or a list of {count} numbers")
 
-    def points(self, name: str, size: int) -> list[tuple[float, ...]]:
-        """A list of points. They must be finite."""
+    def points(self, name: str, size: int, expected: str = "") -> list[tuple[float, ...]]:
+        """A list of points, or rows. They must be finite."""
         match self.value(name):
             case tuple(rows):
                 made = [_vector(row) for row in rows]
                 if all(len(row) == size and all(map(math.isfinite, row)) for row in made):
                     return made
-        raise self.wrong(name, f"a list of points, each of {size} finite numbers")
+        raise self.wrong(name, expected or f"a list of points, each of {size} finite numbers")
 
     def indices(self, name: str, count: int) -> list[tuple[int, ...]]:
         """A list of lists of indices below `count`."""

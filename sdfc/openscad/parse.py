@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -13,6 +14,7 @@ from sdfc.diagnostics import SceneError, Source, Span, scene_error
 from sdfc.openscad.syntax import Argument, Call, Value
 from sdfc.syntax.tables import load
 
+LARGEST = 1e12
 _WORDS: dict[str, Value] = {"true": True, "false": False, "undef": None}
 _READABLE = {
     "_LEFT": "`(`",
@@ -39,6 +41,14 @@ class _WrongValueError(Exception):
     def __init__(self, token: Token) -> None:
         super().__init__(str(token))
         self.token = token
+
+
+def _number(text: str) -> float:
+    """May be infinite or not a number: ValueError where it is too large for a size."""
+    value = float(text)
+    if LARGEST < abs(value) < math.inf:
+        raise ValueError(text)
+    return value
 
 
 class _Build(Transformer[Token, Any]):
@@ -81,8 +91,8 @@ def _value(token: Any) -> tuple[int, int, Value]:
 
 
 _CONVERT: dict[str, Any] = {
-    "NUMBER": float,
-    "NUMBERS": lambda token: tuple(float(item) for item in token[1:-1].split(",")),
+    "NUMBER": _number,
+    "NUMBERS": lambda token: tuple(_number(item) for item in token[1:-1].split(",")),
     "STRING": lambda token: token[1:-1],
     "NAME": lambda token: _WORDS[token],
 }
@@ -113,7 +123,7 @@ def _wrong_value(source: Source, token: Token) -> SceneError:
             span,
             "flattened CSG has no variables: write it with `openscad -o x.csg x.scad`",
         )
-    return scene_error("this is not a list of numbers", span)
+    return scene_error("this is no number, or too large a one", span, f"numbers go to {LARGEST:g}")
 
 
 def _unexpected(source: Source, error: UnexpectedInput) -> SceneError:

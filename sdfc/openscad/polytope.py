@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-Point: TypeAlias = tuple[float, float, float]
+from sdfc.openscad.space import Point
+
 Integers: TypeAlias = tuple[int, int, int]
 Plane: TypeAlias = tuple[Point, float]  # unit normal n and offset d: inside where n . p <= d
 

@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from sdfc.diagnostics import Span
 from sdfc.openscad import polytope
 from sdfc.openscad.context import Context
-from sdfc.openscad.generators import Generator, frame
-from sdfc.openscad.polytope import Point
+from sdfc.openscad.generators import Generator
 from sdfc.openscad.refusal import RefusalError
+from sdfc.openscad.space import Point, dot, frame, translation
 from sdfc.shape.graph import Shape
 
 MOST = 200  # balls that are not within others
@@ -66,10 +66,6 @@ def _along(p: Point, direction: Point, distance: float) -> Point:
     return p[0] + distance * direction[0], p[1] + distance * direction[1], p[2] + distance * direction[2]
 
 
-def _dot(a: Point, b: Point) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
 def _edge(a: Generator, b: Generator, every: Sequence[Generator]) -> list[Point] | None:
     """The normals of the planes that touch a, b and a third ball, all others below; None where a, b are no edge."""
     length = math.dist(a.center, b.center)
@@ -82,8 +78,8 @@ def _edge(a: Generator, b: Generator, every: Sequence[Generator]) -> list[Point]
         if other is a or other is b:
             continue
         to = _along(other.center, a.center, -1.0)
-        x, y = sine * _dot(v, to), sine * _dot(w, to)
-        room = a.radius - other.radius - cosine * _dot(u, to)  # x cos t + y sin t <= room
+        x, y = sine * dot(v, to), sine * dot(w, to)
+        room = a.radius - other.radius - cosine * dot(u, to)  # x cos t + y sin t <= room
         reach, slack = math.hypot(x, y), SAME * 1e-3 * (length + abs(room))
         if room >= reach - slack:
             continue
@@ -116,7 +112,7 @@ def _ball(context: Context, ball: Generator, span: Span) -> Shape:
 
 
 def _placed(context: Context, shape: Shape, p: Point, span: Span) -> Shape:
-    return context.moved(((1, 0, 0, p[0]), (0, 1, 0, p[1]), (0, 0, 1, p[2])), shape, span)
+    return context.moved(translation(p), shape, span)
 
 
 def along(context: Context, shape: Shape, p: Point, axis: Point, span: Span) -> Shape:

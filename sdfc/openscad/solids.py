@@ -10,17 +10,19 @@ from sdfc.openscad import polytope
 from sdfc.openscad.generators import Generator, Spanned
 from sdfc.openscad.invocation import Invocation
 from sdfc.openscad.part import Solid
-from sdfc.openscad.polytope import Plane, Point
+from sdfc.openscad.polytope import Plane
 from sdfc.openscad.refusal import RefusalError
+from sdfc.openscad.space import Point
 
 Z: Point = (0.0, 0.0, 1.0)
 Ring = tuple[float, float]  # radius and height of a ring of corners
+SMALLEST = 1e-12  # a size below this is nothing
 FLAT = 1e-5  # of the extent: how far a corner may be off a plane and count as on it (a .csg file has six digits)
 
 
 def is_size(*values: float) -> bool:
     """Whether OpenSCAD makes anything of these sizes."""
-    return all(math.isfinite(v) and v > 0.0 for v in values)
+    return all(math.isfinite(v) and v > SMALLEST for v in values)
 
 
 def points_hull(corners: Sequence[Point]) -> Spanned:

@@ -13,9 +13,9 @@ from sdfc.openscad.context import Y_TO_Z, Context
 from sdfc.openscad.outline import Edge, Pocketed, Point2
 from sdfc.openscad.plane import Common, Disc, Joined, Outside, Plane, Polygon, Stroke
 from sdfc.openscad.polytope import Plane as Plane3
-from sdfc.openscad.polytope import Point
 from sdfc.openscad.profile import profile
 from sdfc.openscad.refusal import RefusalError
+from sdfc.openscad.space import Point
 from sdfc.shape.graph import Shape
 
 MOST_SIDES = 64  # of a convex polygon whose sides become planes; one with more is extruded as it is

@@ -59,7 +59,7 @@ class _Placer:
                 return self._graph.apply(shape.definition, arguments, moved, shape.span)
             if scale.number != 1.0 and shape.definition.is_primitive:
                 shrink, grow = self._uniform(1.0 / scale, shape.dimension), self._uniform(scale, shape.dimension)
-                forward, inverse = forward.after(shrink), grow.after(inverse)
+                forward, inverse = forward.after(shrink).tidied(), grow.after(inverse).tidied()
                 return self._moved(self._graph.apply(shape.definition, arguments, (), shape.span), forward, inverse)
         children = [self.placed(c, self._identity, self._identity) for c in shape.children]
         inner = self._graph.apply(shape.definition, shape.arguments, children, shape.span)

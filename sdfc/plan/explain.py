@@ -41,7 +41,7 @@ def _tree(step: Step, depth: int) -> list[str]:
             side = "" if step.inside else "complement of "
             return [f"{pad}{side}{step.part.name} ({step.part.span}): closed form, {step.intervals} interval(s) a ray"]
         case Many():
-            return [f"{pad}{len(step.members)} of {step.name}: closed form, 1 interval a ray; one line of GLSL each"]
+            return [f"{pad}{len(step.members)} of {step.name}: closed form, 1 interval a ray; a row of a table each"]
         case Tangent():
             return [f"{pad}{step.part.name} ({step.part.span}): tangents, its function is convex"]
         case Ball():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sdfc.plan.steps import Closed, Step, leaves_of
+from sdfc.plan.steps import Any, Closed, Many, Step, leaves_of
 from sdfc.shape.material import Material
 from sdfc.tracers.record import Tracer
 
@@ -31,5 +31,13 @@ class Plan:
 
     @property
     def events(self) -> int:
-        """How many ends of closed-form intervals there are: no loop of events runs longer than twice that."""
-        return sum(2 * leaf.intervals for leaf in leaves_of(self.root) if isinstance(leaf, Closed))
+        """How many ends of closed-form intervals there are outside tables: no loop of events runs longer than that."""
+        steps = self.root.steps if isinstance(self.root, Any) else (self.root,)
+        single = [leaf for step in steps if not isinstance(step, Many) for leaf in leaves_of(step)]
+        return sum(2 * leaf.intervals for leaf in single if isinstance(leaf, Closed))
+
+    @property
+    def rows(self) -> int:
+        """How many rows all tables have."""
+        steps = self.root.steps if isinstance(self.root, Any) else (self.root,)
+        return sum(min(len(step.members), 2000) for step in steps if isinstance(step, Many))

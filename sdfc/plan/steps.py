@@ -47,9 +47,9 @@ class Closed:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Many:
-    """Members of the scene's union that are alike but for place, size and material: one line of GLSL each.
+    """Members of the scene's union that are alike but for place, size and material: a row of a table each.
 
-    All are Closed, of one definition, moved only, with one interval a ray.
+    All are Closed, of one definition, moved only, constant, with one interval a ray.
     """
 
     name: str

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sdfc.diagnostics import Diagnostic, SceneError, Span, scene_error
-from sdfc.field.graph import Expr, Type
 from sdfc.scene import values
 from sdfc.scene.arguments import Given, check, convert, gather, match
+from sdfc.scene.check import try_out
 from sdfc.scene.define import IN_PLANE
 from sdfc.scene.names import Module, Names, Problems, evaluate
 from sdfc.scene.ranges import samples
@@ -113,21 +113,13 @@ def _check_requirements(definition: Definition, environment: dict[str, Argument]
 
 
 def _try(definition: Definition, arguments: Sequence[Argument], names: Names) -> None:
-    """Evaluates the formula once for each length of a list and each count, so that a wrong index is told now."""
-    pairs = list(zip(definition.values, arguments, strict=True))
-    lengths = tuple([len(a) if isinstance(a, tuple) else a for p, a in pairs if p.kind.is_list or p.kind is Kind.COUNT])
-    key = (definition, *lengths)
-    if (definition.is_standard and not lengths) or key in names.context.tried:
-        return
-    names.context.tried.add(key)
-    graph = names.context.graph
-    environment = {p.name: a for p, a in zip(definition.values, arguments, strict=True)}
-    point = graph.input("p", Type(definition.dimension))
-
-    def unknown(p: Expr) -> Expr:
-        return graph.input("child", Type.FLOAT)
-
-    definition.formula(point, environment, {p.name: unknown for p in definition.children})
+    """Tries a formula with loops once for each length of a list and each count: a wrong index is told now."""
+    pairs = zip(definition.values, arguments, strict=True)
+    sizes = {p.name: a for p, a in pairs if p.kind.is_list or p.kind is Kind.COUNT}
+    key = (definition, *[len(a) if isinstance(a, tuple) else a for a in sizes.values()])
+    if sizes and key not in names.context.tried:
+        names.context.tried.add(key)
+        try_out(definition, names.context.graph, sizes)
 
 
 def expand(

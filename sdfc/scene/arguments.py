@@ -114,6 +114,8 @@ def _vector(size: int) -> Callable[[Value, Span], Expr]:
 def _list_of(element: Callable[[Value, Span], Expr]) -> Callable[[Value, Span], Argument]:
     def convert(value: Value, span: Span) -> Argument:
         found = values.items(value, span)
+        if not found:
+            raise scene_error("the list is empty", span)
         if len(found) > LONGEST_LIST:
             raise scene_error(f"a list of {len(found)} values; {LONGEST_LIST} are allowed here", span)
         return tuple([element(item, span) for item in found])

@@ -12,7 +12,7 @@ from sdfc.scene import arithmetic, combine, functions, settings, values
 from sdfc.scene.apply import apply, expand, find
 from sdfc.scene.arguments import Given, gather, match
 from sdfc.scene.library import standard_names
-from sdfc.scene.names import Names, Rule, did_you_mean, evaluate
+from sdfc.scene.names import Names, Problems, Rule, did_you_mean, evaluate
 from sdfc.scene.transforms import TRANSFORMS, transform
 from sdfc.scene.values import Value, is_shape, words
 from sdfc.shape.definition import Kind
@@ -38,17 +38,28 @@ def _unary(node: tree.Unary, names: Names) -> Value:
 def _operation(node: tree.Operation, names: Names) -> Value:
     if node.rest[0].operator in ("and", "or"):
         return arithmetic.logic(node, names)
-    first = evaluate(node.first, names)
-    rest: list[tuple[str, Span, Value, Span]] = []
-    for operand in node.rest:
-        names.context.budget.step(operand.operator_span)
-        rest.append((operand.operator, operand.operator_span, evaluate(operand.value, names), operand.value.span))
+    first, rest = _operands(node, names)
     if is_shape(first) or any(is_shape(value) for _, _, value, _ in rest) or node.rest[0].operator in "|&":
         return combine.operator(node, first, rest, names)
     result = values.quantity(first, node.first.span)
     for symbol, place, value, span in rest:
         result = arithmetic.calculate(symbol, result, values.quantity(value, span), place, node.span)
     return result
+
+
+def _operands(node: tree.Operation, names: Names) -> tuple[Value, list[tuple[str, Span, Value, Span]]]:
+    """The values of all operands, each of the others with its operator; all their errors at once."""
+    problems = Problems()
+    found: list[Value] = []
+    for operand in (node.first, *[o.value for o in node.rest]):
+        names.context.budget.step(operand.span)
+        try:
+            found.append(evaluate(operand, names))
+        except SceneError as error:
+            problems.take(error)
+    problems.finish()
+    pairs = zip(node.rest, found[1:], strict=True)
+    return found[0], [(o.operator, o.operator_span, value, o.value.span) for o, value in pairs]
 
 
 # --- calls

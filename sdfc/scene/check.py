@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 
 from sdfc.diagnostics import Diagnostic, SceneError
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.scene.define import type_of
 from sdfc.shape.definition import Argument, ChildFacts, Definition, Distance, Kind, Parameter
 
+NO_SIZES: Mapping[str, Argument] = MappingProxyType({})
 
-def try_out(definition: Definition, graph: FieldGraph) -> None:
-    """Evaluates everything a definition declares. Raises SceneError with all that is wrong."""
-    arguments = {p.name: _unknown(p, graph) for p in definition.values}
+
+def has_sizes(definition: Definition) -> bool:
+    """Whether loops and indices of the formula depend on arguments: lists and counts."""
+    return any(p.kind.is_list or p.kind is Kind.COUNT for p in definition.values)
+
+
+def try_out(definition: Definition, graph: FieldGraph, sizes: Mapping[str, Argument] = NO_SIZES) -> None:
+    """Evaluates all that a definition declares; `sizes` are its lists and counts. Raises SceneError with all errors."""
+    arguments = {p.name: sizes.get(p.name) or _unknown(p, graph) for p in definition.values}
     point = graph.input("p", Type(definition.dimension))
     children: dict[str, Distance] = {p.name: _distance(p.name, graph) for p in definition.children}
     facts = {p.name: _facts(p, graph) for p in definition.children}
@@ -47,13 +55,9 @@ def try_out(definition: Definition, graph: FieldGraph) -> None:
 
 
 def _unknown(parameter: Parameter, graph: FieldGraph) -> Argument:
-    """Stands for any argument; a list has three elements, and a count (loops need to know it) is three or its least."""
+    """Stands for any argument."""
     type_ = type_of(parameter.kind)
-    if parameter.kind.is_list:
-        return tuple([graph.input(f"{parameter.name}_{i}", type_) for i in range(3)])
-    if parameter.kind is Kind.COUNT:
-        return graph.constant(max(3.0, (parameter.minimum or 0.0) + 1.0))
-    return graph.input(parameter.name, type_)
+    return () if parameter.kind.is_list else graph.input(parameter.name, type_)
 
 
 def _distance(name: str, graph: FieldGraph) -> Distance:

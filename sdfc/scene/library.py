@@ -12,7 +12,7 @@ from typing import cast
 
 from sdfc.diagnostics import InternalError, Source, Span
 from sdfc.field.graph import Expr, FieldGraph
-from sdfc.scene.check import try_out
+from sdfc.scene.check import has_sizes, try_out
 from sdfc.scene.define import IN_PLANE, define, in_plane
 from sdfc.scene.formula import Helper, Outer
 from sdfc.shape.definition import Definition
@@ -57,7 +57,8 @@ class Library:
         if not name.endswith(IN_PLANE):
             return define(declaration(name), self._values, outer, is_standard=True)
         twin = define(in_plane(declaration(name.removesuffix(IN_PLANE))), self._values, outer, is_standard=True)
-        try_out(twin, self._values)
+        if not has_sizes(twin):
+            try_out(twin, self._values)
         return twin
 
 

@@ -10,7 +10,7 @@ from sdfc.diagnostics import Diagnostic, SceneError, Span, scene_error
 from sdfc.field.graph import Expr
 from sdfc.scene import settings
 from sdfc.scene.calls import BUILT_IN
-from sdfc.scene.check import try_out
+from sdfc.scene.check import has_sizes, try_out
 from sdfc.scene.define import IN_PLANE, define, in_plane
 from sdfc.scene.files import Folder, rows
 from sdfc.scene.formula import Helper
@@ -143,7 +143,8 @@ class FileModule:
         if made is None:
             wanted = in_plane(declaration) if name.endswith(IN_PLANE) else declaration
             made = define(wanted, self.context.graph, Outside(module))
-            try_out(made, self.context.graph)
+            if not has_sizes(made):  # those are tried wherever they are used
+                try_out(made, self.context.graph)
             module._definitions[name] = made
         return made
 

@@ -13,7 +13,7 @@ _MOST_AT_ONCE = 2  # params whose corners are all combined: 3 values each
 
 
 def samples(expr: Expr, context: Context) -> Iterator[tuple[Expr, str]]:
-    """Constant values that the expression takes, each with words for where: '' or ' at angle = 0.5'.
+    """Constant values that the expression takes, each with words for where: '' or ' (at angle = 0.5)'.
 
     A constant is its own only sample. Otherwise every param takes its default, its low and its high, in all
     combinations for a few params, one at a time for more.
@@ -28,7 +28,20 @@ def samples(expr: Expr, context: Context) -> Iterator[tuple[Expr, str]]:
         value = substitute(expr, replace)
         if value.is_constant:
             where = ", ".join(f"{name} = {_text(numbers)}" for name, numbers in setting.items())
-            yield value, f" at {where}"
+            yield value, f" (at {where})"
+
+
+def zero(expr: Expr, context: Context, least: float = 0.0) -> str | None:
+    """Where a number is zero (or not above `least`, or no number at all), in words; None where it never is.
+
+    A number of both signs within the params' ranges passes zero somewhere between.
+    """
+    signs: set[bool] = set()
+    for value, where in samples(expr, context):
+        if not abs(value.number) > least:
+            return where
+        signs.add(value.number > 0)
+    return " (within the range of a param)" if len(signs) > 1 else None
 
 
 def _text(numbers: tuple[float, ...]) -> str:

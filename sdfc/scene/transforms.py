@@ -11,7 +11,7 @@ from sdfc.field.graph import Expr, FieldGraph, Op, Operand
 from sdfc.scene import values
 from sdfc.scene.arguments import Given, check_finite, gather, match
 from sdfc.scene.names import Names
-from sdfc.scene.ranges import samples
+from sdfc.scene.ranges import samples, zero
 from sdfc.shape import matrix
 from sdfc.shape.graph import Shape
 from sdfc.shape.matrix import Matrix
@@ -89,9 +89,9 @@ def _scale(given: _Arguments, dimension: int, names: Names, span: Span) -> tuple
     else:
         parts = _components(given, dimension, 1.0, names)
     for axis, part in enumerate(parts):
-        for value, where in samples(part, names.context):
-            if value.number == 0:
-                raise scene_error(f"scale by 0 along {_AXES[axis]}{where} leaves nothing", span)
+        where = zero(part, names.context)
+        if where is not None:
+            raise scene_error(f"scale by 0 along {_AXES[axis]}{where} leaves nothing", span)
     x, y, z = parts
     return matrix.scaling(graph, x, y, z), matrix.scaling(graph, 1.0 / x, 1.0 / y, 1.0 / z)
 
@@ -219,9 +219,9 @@ def _inverted(forward: Matrix, names: Names, span: Span) -> tuple[Matrix, Matrix
     graph = names.context.graph
     a, b, c = (graph.vector(*row) for row in forward.linear)
     size = graph.length(a) * graph.length(b) * graph.length(c)
-    for value, where in samples(graph.dot(a, graph.cross(b, c)) / size, names.context):
-        if not abs(value.number) > 1e-12:
-            raise scene_error(f"this transform is singular{where}: it flattens the shape", span)
+    where = zero(graph.dot(a, graph.cross(b, c)) / size, names.context, 1e-12)
+    if where is not None:
+        raise scene_error(f"this transform is singular{where}: it flattens the shape", span)
     return forward, matrix.inverse(forward)
 
 

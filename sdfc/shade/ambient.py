@@ -17,7 +17,7 @@ from sdfc.shade.vector import exponential, power, reflect, saturate, square
 
 OCCLUSION_HEIGHTS = (0.012, 0.045, 0.11, 0.22)
 """Where `occlusion_weight` wants its taps: heights over the surface, as parts of the scene's radius."""
-OCCLUSION_WEIGHTS = (0.2, 0.3, 0.28, 0.22)
+OCCLUSION_WEIGHTS = (0.1, 0.3, 0.33, 0.27)
 """What each tap counts for; the sum is 1."""
 DARKEST = 0.12
 """What is left of the sky where every tap is blocked: a little light finds its way in everywhere."""

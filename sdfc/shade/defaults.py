@@ -25,9 +25,9 @@ class SunNumbers:
     intensity: float
 
 
-SKY = SkyNumbers(zenith=(0.20, 0.37, 0.68), horizon=(0.78, 0.84, 0.92), ground=(0.30, 0.285, 0.27))
-SUN_COLOR: Vector = (1.0, 0.90, 0.76)
-SUN_INTENSITY = 3.0
+SKY = SkyNumbers(zenith=(0.30, 0.44, 0.68), horizon=(0.88, 0.90, 0.92), ground=(0.36, 0.34, 0.32))
+SUN_COLOR: Vector = (1.0, 0.89, 0.74)
+SUN_INTENSITY = 3.4
 SUN_HEIGHT = math.radians(42.0)
 """The sun's elevation."""
 SUN_LEFT = math.radians(48.0)

@@ -47,6 +47,11 @@ class Matrix:
         linear: list[list[Operand]] = [[_sum_of_products(row, column) for column in columns] for row in rows]
         return matrix(graph, linear, [_sum_of_products(row, shift) + m for row, m in zip(rows, moved, strict=True)])
 
+    def tidied(self) -> Matrix:
+        """For a rigid map: entries that only rounding keeps from -1, 0 or 1 are made exact."""
+        first, second, third = ((_tidy(a), _tidy(b), _tidy(c)) for a, b, c in self.linear)
+        return Matrix((first, second, third), self.offset)
+
     def point(self, p: Row) -> Row:
         """The image of a point given by components."""
         x, y, z = (_dot(row, p) + shift for row, shift in zip(self.linear, self.offset, strict=True))
@@ -84,6 +89,13 @@ class Matrix:
             row: Row = (d[0], d[1], graph.constant(0.0))
             return graph.vector(*(_dot(r, row) for r in self.linear[:2]))
         return graph.vector(*(_dot(r, (d[0], d[1], d[2])) for r in self.linear))
+
+
+def _tidy(entry: Expr) -> Expr:
+    if not entry.is_constant or not abs(entry.number) <= 1.5:
+        return entry
+    nearest = float(round(entry.number))
+    return entry.graph.constant(nearest) if abs(entry.number - nearest) < 1e-14 else entry
 
 
 def _sum_of_products(a: Sequence[float], b: Sequence[float]) -> float:

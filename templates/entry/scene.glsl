@@ -44,6 +44,9 @@ void prepare() {
 {% include "lib/rebase.glsl" %}
 
 {{ functions }}
+{% if tables %}
+{{ tables }}
+{% endif %}
 {% if map %}
 {{ map }}
 {% endif %}

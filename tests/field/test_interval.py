@@ -306,6 +306,18 @@ def test_sides_of_a_jump_are_tight_and_independent() -> None:
     assert 3.1 < lo[0] < 3.2 and hi[0] == pytest.approx(np.sqrt(21.0))
 
 
+def test_comparisons_of_the_same_values_agree_on_the_side() -> None:
+    """y < 0 and y >= 0 flip together: their exclusive or never does, so the product of both signs is -1 throughout."""
+    graph = FieldGraph()
+    y, zero = graph.input("p")[1], graph.constant(0.0)
+    below = graph.select(y < zero, 1.0, -1.0)
+    above = graph.select(graph.add(Op.LESS_EQUAL, zero, y), 1.0, -1.0)
+    again = graph.select(graph.add(Op.LESS_EQUAL, y, zero), 1.0, -1.0)
+    o, d = np.zeros((3, 1)), np.array([[1.0], [1.0], [0.0]])
+    lo, hi = IntervalEvaluator(below * above * below * again).across_jumps(o, d, np.array([-1.0]), np.array([1.0]))
+    assert (lo[0], hi[0]) == (pytest.approx(-1.0), pytest.approx(-1.0))
+
+
 def bound(build: Callable[[FieldGraph, Expr], Expr], lo: float = -2.0, hi: float = 2.0) -> float:
     graph = FieldGraph()
     return gradient_bound(build(graph, graph.input("p")), [lo] * 3, [hi] * 3)

@@ -19,7 +19,7 @@ import pytest
 from click.testing import CliRunner
 from mutations import mutated, random_bytes
 
-from sdfc.cli import main
+from sdfc.cli.verbs import command
 
 SCENES = Path(__file__).parent.parent.parent / "scenes"
 FULL = os.environ.get("SDFC_FUZZ") == "full"
@@ -61,7 +61,7 @@ def answer(path: Path, content: bytes) -> str | None:
     path.write_bytes(content)
     signal.setitimer(signal.ITIMER_REAL, CASE_LIMIT)
     try:
-        result = CliRunner().invoke(main, ["emit-glsl", str(path)])
+        result = CliRunner().invoke(command, ["emit-glsl", str(path)], prog_name="sdfc")
     except HangError as error:
         return str(error)
     finally:

@@ -1,8 +1,8 @@
 """Makes the tables `models/*.points` with OpenSCAD itself. Not a test: run it by hand where `openscad` is installed.
 
-For each `models/*.csg` OpenSCAD makes a mesh, its true curves cut into many facets. Points around its surface and in its
-box are kept with whether they are inside (by the winding number: Jacobson, Kavan and Sorkine-Hornung, 2013), unless they
-are so near to the surface that the facets decide.
+For each `models/*.csg` OpenSCAD makes a mesh, its true curves cut into many facets. Points around its surface and in
+its box are kept with whether they are inside (by the winding number: Jacobson, Kavan and Sorkine-Hornung, 2013), unless
+they are so near to the surface that the facets decide.
 """
 
 from __future__ import annotations

@@ -388,3 +388,29 @@ def test_a_wall_behind_a_jump_is_not_jumped() -> None:
         lambda p: 0.5 - p.graph.call(Op.FLOOR, p[2]), ray((0.0, 0.0, 0.5), (0.0, 0.0, 1.0)), tolerance=1e-3, thin=1e-6
     )
     assert truth.status[0] == Status.HIT and truth.t_lo[0] == pytest.approx(0.5)
+
+
+def test_a_polygon_has_no_films_at_the_height_of_its_corners() -> None:
+    """The winding's comparisons flip in pairs there; the ray passes beside the triangle."""
+
+    def triangle(p: Expr) -> Expr:
+        graph = p.graph
+        corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]
+        squares, sign = graph.constant(np.inf), graph.constant(1.0)
+        for (ax, ay), (bx, by) in zip(corners, [*corners[1:], corners[0]], strict=True):
+            e, w = graph.constant(bx - ax, by - ay), p.swizzle("xy") - graph.constant(ax, ay)
+            along = graph.clamp(graph.dot(w, e) / graph.dot(e, e), 0.0, 1.0)
+            squares = graph.min(squares, graph.dot(w - e * along, w - e * along))
+            above, under = graph.add(Op.LESS_EQUAL, graph.constant(ay), p[1]), p[1] < by
+            left = graph.add(Op.LESS, e[1] * w[0], e[0] * w[1])
+            every = graph.add(Op.AND, graph.add(Op.AND, above, under), left)
+            none = graph.add(Op.OR, graph.add(Op.OR, above, under), left)
+            sign = sign * graph.select(graph.add(Op.OR, every, graph.add(Op.NOT, none)), -1.0, 1.0)
+        return sign * graph.sqrt(squares)
+
+    o = np.stack([np.linspace(1.2, 3.0, 40), np.full(40, 2.0), np.zeros(40)])
+    d = np.repeat(np.array([[0.05], [-1.0], [0.0]]), 40, axis=1)
+    truth = certify(triangle, (o, d), tolerance=1e-5, thin=1e-6)
+    assert (truth.status == Status.MISS).all() and not truth.contested.any()
+    inside = certify(triangle, (o - np.array([[1.0], [0.0], [0.0]]), d), tolerance=1e-5, thin=1e-6)
+    assert (inside.status == Status.HIT).sum() > 10 and inside.contested.sum() <= 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,20 +13,37 @@ from hypothesis import reject
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from sdfc.diagnostics import SceneError
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.field.numeric import Evaluator
-from sdfc.scene.define import type_of
+from sdfc.scene.define import IN_PLANE, type_of
 from sdfc.scene.library import Library, standard_names
 from sdfc.shape.definition import Argument, ChildFacts, Definition, Exactness, Kind, Parameter
 
 Array = NDArray[np.float64]
-NAMES = standard_names()
-_DEFINITIONS = {name: Library(FieldGraph()).definition(name) for name in NAMES}
+
+
+def _definitions() -> dict[str, Definition]:
+    """Every standard field, and of every operation on solids its twin in the plane, where it makes sense there."""
+    library = Library(FieldGraph())
+    found = {}
+    for name in standard_names():
+        definition = library.definition(name)
+        assert definition is not None
+        found[name] = definition
+        if definition.dimension == 3 and any(p.kind is Kind.SOLID for p in definition.children):
+            with suppress(SceneError):  # its formula makes sense in space only
+                found[name + IN_PLANE] = library.definition(name + IN_PLANE) or definition
+    return found
+
+
+_DEFINITIONS = _definitions()
+NAMES = list(_DEFINITIONS)
 
 
 def names_where(condition: Callable[[Definition], bool]) -> list[str]:
     """The standard names whose definition is such."""
-    return [name for name, definition in _DEFINITIONS.items() if definition and condition(definition)]
+    return [name for name, definition in _DEFINITIONS.items() if condition(definition)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,9 +156,10 @@ class Subject:
             return np.zeros((len(points), 0))
         a = inside[:, generator.integers(0, inside.shape[1], count)]
         b = outside[:, generator.integers(0, outside.shape[1], count)]
-        for _ in range(60):
+        evaluator = Evaluator([self.formula if root is None else root])
+        for _ in range(42):
             middle = (a + b) / 2
-            within = self.value(middle, root) < 0
+            within = evaluator({"p": middle})[0] < 0
             a, b = np.where(within, middle, a), np.where(within, b, middle)
         return (a + b) / 2
 
@@ -169,8 +188,13 @@ def _component(parameter: Parameter) -> st.SearchStrategy[float]:
 
 
 # what a random vector hardly ever is: whole, 0 or 1
-_WHOLE = {("repeat", "count")}
-_FITTING = {"repeat", "polar_repeat"}  # their Lipschitz constant is for a child within its cell
+_WHOLE = {("repeat", "count"), ("repeat_profile", "count")}
+_FITTING = {
+    "repeat",
+    "polar_repeat",
+    "repeat_profile",
+    "polar_repeat_profile",
+}  # their Lipschitz constant is for a child within its cell
 
 
 @st.composite
@@ -302,16 +326,16 @@ def _children(draw: st.DrawFn, kind: Kind, graph: FieldGraph, kinds: str) -> Chi
 
 def _fitting(draw: st.DrawFn, name: str, arguments: Mapping[str, Argument], graph: FieldGraph) -> Child:
     """A child within its cell, anywhere in it."""
-    if name == "polar_repeat":
+    if name.startswith("polar"):
         count = arguments["count"]
         assert isinstance(count, Expr)
         room = 0.8 * math.sin(math.pi / count.number) if count.number > 2 else 0.8
         radius = draw(st.floats(0.2, 1.0)) * room
         aside = draw(st.floats(-1.0, 1.0)) * (room - radius)
-        return _ball(graph, np.array([0.8, 0.1, aside]), radius)
+        return _ball(graph, np.array([0.8, aside] if name.endswith("profile") else [0.8, 0.1, aside]), radius)
     spacing = arguments["spacing"]
     assert isinstance(spacing, Expr)
     half = np.array([0.5 * s if s > 0 else 0.5 for s in spacing.numbers])
     radius = draw(st.floats(0.2, 1.0)) * float(min(half))
-    center = np.array([draw(st.floats(-1.0, 1.0)) for _ in range(3)]) * (half - radius)
+    center = np.array([draw(st.floats(-1.0, 1.0)) for _ in half]) * (half - radius)
     return _ball(graph, center, radius)

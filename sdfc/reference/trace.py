@@ -1,0 +1,240 @@
+"""The step tree over bundles of rays, in float64: the twin of the `proven` tracer's GLSL (ALGORITHMS B0, B1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import assert_never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sdfc.facts.box import Box, everything
+from sdfc.plan.plan import SMALLEST_TOLERANCE, Plan
+from sdfc.plan.steps import All, Any, Ball, Blend, Closed, Many, Part, Step, Tangent, Within, is_closed, leaves_of
+from sdfc.reference.formulas import Formulas, Interval
+from sdfc.reference.rays import Rays, box_interval
+
+Array = NDArray[np.float64]
+
+FAR = 1e9
+GROW = 1e-12  # solids are this much larger, so that parts that touch leave no crack; in units of the scene's radius
+CUT = 4e-12  # what is cut away is this much larger, so that faces that coincide leave no film
+SHY = 1.0 - 1e-12  # a step stays this much short of what is proved, for the rounding of the proof
+MARGIN = 1e-6  # boxes are this much larger than what they hold
+MOST_STEPS = 4096
+PROVEN_TOLERANCE = 1 / 64
+"""How near counts as there, in half pixels."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Walk:
+    """What is known of some rays before the first step."""
+
+    intervals: dict[tuple[int, bool], list[Interval]]
+    boxes: dict[int, tuple[Array, Array]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """Where the rays numbered `index` of a walk are."""
+
+    rays: Rays
+    t: Array
+    index: NDArray[np.int64]
+
+    def take(self, chosen: NDArray[np.int64]) -> _Place:
+        return _Place(self.rays.take(chosen), self.t[chosen], self.index[chosen])
+
+
+class StepTracer:
+    """Finds first hits. Every member of the scene's union is asked by itself, and only the rays that meet its box."""
+
+    def __init__(self, plan: Plan, formulas: Formulas) -> None:
+        self._formulas = formulas
+        self._members = [(member, box_of(member)) for member in members_of(plan.root)]
+
+    def first(self, rays: Rays, start: Array, limit: Array) -> tuple[Array, Array]:
+        """The first hit at or after `start` and before `limit`, else FAR; and how many steps it took, (n,) each."""
+        found = limit.copy()
+        steps = np.zeros(len(rays))
+        for member, box in self._members:
+            enter, leave = box_interval(rays, box)
+            near = np.flatnonzero((enter <= leave) & (leave >= start) & (enter < found))
+            if near.size:
+                begin = np.maximum(start[near], enter[near])
+                t, count = self._solve(member, rays.take(near), begin, found[near])
+                found[near] = np.minimum(found[near], t)
+                steps[near] += count
+        return np.where(found < limit, found, FAR), steps
+
+    def tolerance(self, rays: Rays, t: Array) -> Array:
+        """How near counts as there, (n,): a small part of a pixel."""
+        return np.maximum(SMALLEST_TOLERANCE, PROVEN_TOLERANCE * rays.half_pixel(t))
+
+    def _solve(self, member: Step, rays: Rays, start: Array, limit: Array) -> tuple[Array, Array]:
+        """Steps until the tree answers where the ray is, or past the limit. Only rays still on their way are stepped."""
+        walk = self._walk(member, rays)
+        closed = is_closed(member)
+        t = self._start(member, walk, start)
+        counts = np.zeros(len(rays))
+        here = _Place(rays, t, np.arange(len(rays)))
+        here = here.take(np.flatnonzero(t < limit))
+        for _ in range(MOST_STEPS):
+            if not here.index.size:
+                break
+            answer = self._next(member, walk, here)
+            counts[here.index] += 1.0
+            t[here.index] = answer
+            going = np.flatnonzero((answer > here.t) & (answer < limit[here.index]))
+            here = _Place(here.rays.take(going), answer[going], here.index[going])
+        if closed:
+            t[here.index] = FAR  # not one solid thicker than rounding in all these events
+        return np.where(t < limit, t, FAR), counts
+
+    def _walk(self, member: Step, rays: Rays) -> _Walk:
+        intervals: dict[tuple[int, bool], list[Interval]] = {}
+        for leaf in leaves_of(member):
+            match leaf:
+                case Closed(part=part, inside=inside) if (id(part), inside) not in intervals:
+                    grow = GROW if inside else CUT
+                    intervals[id(part), inside] = self._formulas.intervals(part, rays.o, rays.d, grow)
+                case _:
+                    pass
+        boxes = {id(within): box_interval(rays, within.box) for within in _boxed(member)}
+        return _Walk(intervals, boxes)
+
+    def _start(self, step: Step, walk: _Walk, start: Array) -> Array:
+        """Where stepping may begin: what boxes and closed-form parts prove before any value is known."""
+        match step:
+            case Closed(inside=True):
+                return _enter(walk.intervals[id(step.part), True], start)
+            case Within():
+                enter, leave = walk.boxes[id(step)]
+                return _enter([Interval(enter, leave)], start)
+            case (Any() | Many()) if members_of(step):
+                return np.minimum.reduce([self._start(s, walk, start) for s in members_of(step)])
+            case All() if step.steps:
+                return np.maximum.reduce([self._start(s, walk, start) for s in step.steps])
+            case _:
+                return start.copy()
+
+    def _next(self, step: Step, walk: _Walk, here: _Place) -> Array:
+        match step:
+            case Closed():
+                intervals = walk.intervals[id(step.part), step.inside]
+                taken = [Interval(i.enter[here.index], i.leave[here.index]) for i in intervals]
+                return _enter(taken, here.t) if step.inside else _leave(taken, here.t)
+            case Tangent():
+                return self._tangent(step.part, here)
+            case Ball():
+                return self._ball(step.part, step.lipschitz, step.inside, here)
+            case Blend():
+                return self._ball(step.part, step.lipschitz, True, here)
+            case Within():
+                return self._within(step, walk, here)
+            case Any() | Many():
+                answers = [self._next(s, walk, here) for s in members_of(step)]
+                return np.minimum.reduce(answers) if answers else np.full(len(here.t), FAR)
+            case All():
+                return self._all(step, walk, here)
+            case _:
+                assert_never(step)
+
+    def _all(self, step: All, walk: _Walk, here: _Place) -> Array:
+        """The greatest answer; where one part already answers further on, the dearer ones are not asked."""
+        answer = here.t.copy()
+        undecided = np.arange(len(here.t))
+        for part in sorted(step.steps, key=lambda s: not is_closed(s)):
+            asked = here if undecided.size == len(here.t) else here.take(undecided)
+            answer[undecided] = np.maximum(answer[undecided], self._next(part, walk, asked))
+            undecided = np.flatnonzero(answer <= here.t)
+            if not undecided.size:
+                break
+        return answer
+
+    def _within(self, step: Within, walk: _Walk, here: _Place) -> Array:
+        enter, leave = (end[here.index] for end in walk.boxes[id(step)])
+        answer = np.where((here.t < enter) & (enter < leave), enter, FAR)
+        inside = np.flatnonzero((here.t >= enter) & (here.t < leave))
+        if inside.size:
+            ahead = self._next(step.step, walk, here.take(inside))
+            answer[inside] = np.where(ahead < leave[inside], ahead, FAR)
+        return answer
+
+    def _tangent(self, part: Part, here: _Place) -> Array:
+        """The root of a convex function's tangent: never past the surface."""
+        value, slope = self._formulas.slope(part, here.rays.at(here.t), here.rays.d)
+        near = self.tolerance(here.rays, here.t)
+        fall = 1e-12 - slope
+        ahead = here.t + (value - 0.5 * near) / np.where(fall > 0.0, fall, 1.0) * SHY
+        return np.where(value <= near, here.t, np.where(fall > 0.0, ahead, FAR))
+
+    def _ball(self, part: Part, lipschitz: float, inside: bool, here: _Place) -> Array:
+        near = self.tolerance(here.rays, here.t)
+        radius = self._formulas.value(part, here.rays.at(here.t)) / max(lipschitz, 1e-9)
+        if not inside:  # a hit on what is cut away lies inside it, by more than its own tolerance
+            radius = 3.0 * near - radius
+        return np.where(radius <= near, here.t, here.t + radius * SHY)
+
+
+def members_of(root: Step) -> tuple[Step, ...]:
+    """The members of a union; anything else is its own only member."""
+    match root:
+        case Any():
+            return tuple(member for step in root.steps for member in members_of(step))
+        case Many():
+            return root.members
+        case _:
+            return (root,)
+
+
+def box_of(step: Step) -> Box:
+    """A box around the solid."""
+    match step:
+        case Closed() | Ball():
+            return step.part.box.widened(MARGIN) if step.inside else everything()
+        case Tangent() | Blend():
+            return step.part.box.widened(MARGIN)
+        case Within():
+            return step.box.widened(MARGIN).meet(box_of(step.step))
+        case Many() | Any():
+            members = members_of(step)
+            box = box_of(members[0]) if members else everything().meet(Box((1.0,) * 3, (-1.0,) * 3))
+            for member in members[1:]:
+                box = box.hull(box_of(member))
+            return box
+        case All():
+            box = everything()
+            for part in step.steps:
+                box = box.meet(box_of(part))
+            return box
+        case _:
+            assert_never(step)
+
+
+def _boxed(step: Step) -> list[Within]:
+    match step:
+        case Within():
+            return [step, *_boxed(step.step)]
+        case Any() | All():
+            return [within for s in step.steps for within in _boxed(s)]
+        case Closed() | Many() | Tangent() | Ball() | Blend():
+            return []
+        case _:
+            assert_never(step)
+
+
+def _enter(intervals: list[Interval], t: Array) -> Array:
+    """The first parameter at or after t inside one of the intervals."""
+    answer = np.full(t.shape, FAR)
+    for interval in intervals:
+        reached = (interval.enter < interval.leave) & (t < interval.leave)
+        answer = np.minimum(answer, np.where(reached, np.maximum(t, interval.enter), FAR))
+    return answer
+
+
+def _leave(intervals: list[Interval], t: Array) -> Array:
+    """The first parameter at or after t outside all of them (they are in order)."""
+    for interval in intervals:
+        t = np.where((interval.enter <= t) & (t < interval.leave), interval.leave, t)
+    return t
