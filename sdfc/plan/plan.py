@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from sdfc.plan.cluster import rows_at_once, turns
 from sdfc.plan.steps import Any, Closed, Many, Step, leaves_of
 from sdfc.shape.material import Material
 from sdfc.tracers.record import Tracer
@@ -38,6 +39,7 @@ class Plan:
 
     @property
     def rows(self) -> int:
-        """How many rows all tables have."""
+        """How often loops over tables may turn: once a row, once a cluster."""
         steps = self.root.steps if isinstance(self.root, Any) else (self.root,)
-        return sum(min(len(step.members), 2000) for step in steps if isinstance(step, Many))
+        counts = [len(step.members) for step in steps if isinstance(step, Many)]
+        return sum(turns(n, rows_at_once(n)) for n in counts)

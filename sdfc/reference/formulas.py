@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sdfc.field.derivative import directional, gradient
 from sdfc.field.function import Function
-from sdfc.field.graph import Expr, FieldGraph
+from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.field.numeric import Evaluator
 from sdfc.plan.steps import Part
 from sdfc.shape.graph import Apply
@@ -93,8 +93,6 @@ class Formulas:
         """A blend's derivatives by its two operands, and its value, (n,) each, for the operands' values."""
 
         def roots() -> list[Expr]:
-            from sdfc.field.graph import Type
-
             graph = self._graph
             values = [graph.input(name, Type.FLOAT) for name in ("a", "b")]
             children: dict[str, Callable[[Expr], Expr]] = {

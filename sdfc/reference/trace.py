@@ -8,7 +8,7 @@ from typing import assert_never
 import numpy as np
 from numpy.typing import NDArray
 
-from sdfc.facts.box import Box, everything
+from sdfc.facts.box import Box, everything, nothing
 from sdfc.plan.plan import SMALLEST_TOLERANCE, Plan
 from sdfc.plan.steps import All, Any, Ball, Blend, Closed, Many, Part, Step, Tangent, Within, is_closed, leaves_of
 from sdfc.reference.formulas import Formulas, Interval
@@ -51,7 +51,8 @@ class StepTracer:
 
     def __init__(self, plan: Plan, formulas: Formulas) -> None:
         self._formulas = formulas
-        self._members = [(member, box_of(member)) for member in members_of(plan.root)]
+        boxed = [(member, box_of(member)) for member in members_of(plan.root)]
+        self._members = [(member, box) for member, box in boxed if not box.is_empty]
 
     def first(self, rays: Rays, start: Array, limit: Array) -> tuple[Array, Array]:
         """The first hit at or after `start` and before `limit`, else FAR; and how many steps it took, (n,) each."""
@@ -199,7 +200,7 @@ def box_of(step: Step) -> Box:
             return step.box.widened(MARGIN).meet(box_of(step.step))
         case Many() | Any():
             members = members_of(step)
-            box = box_of(members[0]) if members else everything().meet(Box((1.0,) * 3, (-1.0,) * 3))
+            box = box_of(members[0]) if members else nothing()
             for member in members[1:]:
                 box = box.hull(box_of(member))
             return box

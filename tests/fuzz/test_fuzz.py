@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import random
+import re
 import resource
 import shutil
 import signal
@@ -74,8 +75,12 @@ def answer(path: Path, content: bytes) -> str | None:
 
 
 def report(failures: list[tuple[bytes, str]]) -> str:
-    shown = "\n\n".join(f"{content[:3000]!r}\n  -> {what}" for content, what in failures[:5])
-    return f"{len(failures)} failed; the first of them:\n{shown}"
+    """One example, the shortest, of each way to fail."""
+    kinds: dict[str, list[bytes]] = {}
+    for content, what in failures:
+        kinds.setdefault(re.sub(r"/\S+|\d+", "", what), []).append(content)
+    shown = [f"{len(found)} times, as with {min(found, key=len)[:3000]!r}\n  -> {kind}" for kind, found in kinds.items()]
+    return f"{len(failures)} failed\n" + "\n\n".join(shown[:12])
 
 
 def test_random_bytes(folder: Path) -> None:
@@ -84,7 +89,7 @@ def test_random_bytes(folder: Path) -> None:
         if time.monotonic() > end:
             break
         content = random_bytes(chance)
-        if what := answer(folder / f"fuzz.{chance.choice(('sdf', 'csg'))}", content):
+        if what := answer(folder / f"fuzz.{suffix}", content):
             failures.append((content, what))
     assert not failures, report(failures)
 

@@ -1,0 +1,163 @@
+"""What is at points near the surface: gradient, value and material of the part whose surface it is; and distances."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import assert_never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sdfc.facts.box import Box
+from sdfc.plan.plan import Plan
+from sdfc.plan.steps import All, Any, Ball, Blend, BlendNode, BlendTree, BlendUnion, Closed, Many, Part, Step, Tangent, Within
+from sdfc.reference.formulas import Formulas
+from sdfc.reference.rays import box_distance
+from sdfc.reference.trace import FAR, box_of, members_of
+
+Array = NDArray[np.float64]
+_NEAR = 1e-2  # a point on a union's surface is no further than this from the box of the member that it is on
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """`field` (4, n): gradient and value. `material` (n,): its index in the plan. `look` (13, n): see PROPERTIES."""
+
+    field: Array
+    material: NDArray[np.int64]
+    look: Array
+
+    def where(self, index: NDArray[np.int64], other: Surface) -> None:
+        """Takes over `other`'s rows at `index`."""
+        self.field[:, index] = other.field
+        self.material[index] = other.material
+        self.look[:, index] = other.look
+
+    def take(self, chosen: NDArray[np.bool_] | NDArray[np.int64]) -> Surface:
+        """Some of the points."""
+        return Surface(self.field[:, chosen], self.material[chosen], self.look[:, chosen])
+
+
+class SurfaceFold:
+    """Folds a step tree at points, in the scene's own coordinates."""
+
+    def __init__(self, plan: Plan, formulas: Formulas) -> None:
+        self._plan = plan
+        self._formulas = formulas
+        self._index = {id(m): i for i, m in enumerate(plan.materials)}
+        self._looks = [formulas.material(m) for m in plan.materials]
+        self._boxes: dict[int, Box] = {}
+
+    def at(self, p: Array) -> Surface:
+        """The surface at points (3, n) that lie on it."""
+        return self._fold(self._plan.root, p)
+
+    def distance(self, p: Array, reach: float) -> Array:
+        """A lower bound (n,) of the distance to the scene, with the right sign; right up to `reach` only."""
+        return self._distance(self._plan.root, p, reach)
+
+    # surfaces
+
+    def _fold(self, step: Step, p: Array) -> Surface:
+        match step:
+            case Closed() | Ball():
+                return self._leaf(step.part, p, step.inside)
+            case Tangent():
+                return self._leaf(step.part, p, True)
+            case Blend():
+                return self._blend(step.tree, p)
+            case Within():
+                return self._fold(step.step, p)
+            case Any() | Many():
+                return self._nearest(members_of(step), p)
+            case All():
+                first, *rest = (self._fold(s, p) for s in step.steps)
+                for other in rest:
+                    farther = np.flatnonzero(other.field[3] > first.field[3])
+                    first.where(farther, other.take(farther))
+                return first
+            case _:
+                assert_never(step)
+
+    def _nearest(self, members: tuple[Step, ...], p: Array) -> Surface:
+        """Only the members whose boxes are near are asked: a scene may have thousands."""
+        result = self._empty(p.shape[1])
+        for member in members:
+            near = np.flatnonzero(box_distance(p, self._box(member)) < _NEAR)
+            if near.size:
+                found = self._fold(member, p[:, near])
+                nearer = np.flatnonzero(found.field[3] < result.field[3, near])
+                result.where(near[nearer], found.take(nearer))
+        return result
+
+    def _leaf(self, part: Part, p: Array, inside: bool, formula: bool = False) -> Surface:
+        field = self._formulas.surface(part, p, formula)
+        index = self._index[id(part.material)]
+        look = np.repeat(self._looks[index][:, None], p.shape[1], axis=1)
+        return Surface(np.array(field) if inside else -field, np.full(p.shape[1], index), look)
+
+    def _blend(self, tree: BlendTree, p: Array) -> Surface:
+        match tree:
+            case Tangent():
+                return self._leaf(tree.part, p, True, formula=True)
+            case BlendUnion():
+                first, *rest = (self._blend(t, p) for t in tree.operands)
+                for other in rest:
+                    nearer = np.flatnonzero(other.field[3] < first.field[3])
+                    first.where(nearer, other.take(nearer))
+                return first
+            case BlendNode():
+                return self._blended(tree, self._blend(tree.first, p), self._blend(tree.second, p))
+            case _:
+                assert_never(tree)
+
+    def _blended(self, tree: BlendNode, a: Surface, b: Surface) -> Surface:
+        """Both gradients by the blend's own derivatives; the look is mixed in their proportion."""
+        by_a, by_b, value = self._formulas.weights(tree.shape, a.field[3], b.field[3])
+        share = by_b / np.maximum(by_a + by_b, 1e-6)
+        field = np.concatenate([by_a * a.field[:3] + by_b * b.field[:3], value[None]])
+        return Surface(field, np.where(by_b > by_a, b.material, a.material), a.look + (b.look - a.look) * share)
+
+    def _empty(self, count: int) -> Surface:
+        field = np.zeros((4, count))
+        field[1], field[3] = 1.0, FAR
+        return Surface(field, np.zeros(count, np.int64), np.repeat(self._looks[0][:, None], count, axis=1))
+
+    # distances
+
+    def _distance(self, step: Step, p: Array, reach: float) -> Array:
+        match step:
+            case Closed() | Ball():
+                return self._value(step.part, p, step.inside)
+            case Tangent() | Blend():
+                return self._value(step.part, p, True)
+            case Within():
+                inner = self._distance(step.step, p, reach)
+                if not step.is_needed:
+                    return inner
+                box = box_distance(p, step.box)
+                return np.where(box > 1e-3 * step.box.radius, box, inner)
+            case Any() | Many():
+                result = np.full(p.shape[1], FAR)
+                for member in members_of(step):
+                    near = np.flatnonzero(box_distance(p, self._box(member)) < reach)
+                    if near.size:
+                        result[near] = np.minimum(result[near], self._distance(member, p[:, near], reach))
+                return result
+            case All():
+                return np.maximum.reduce([self._distance(s, p, reach) for s in step.steps])
+            case _:
+                assert_never(step)
+
+    def _value(self, part: Part, p: Array, inside: bool) -> Array:
+        slope = self._plan.slopes[id(part)]
+        if not math.isfinite(slope):  # no bound is known: it shades nothing around it
+            return np.full(p.shape[1], FAR if inside else -FAR)
+        value = self._formulas.value(part, p) / max(slope, 1e-9)
+        return value if inside else -value
+
+    def _box(self, step: Step) -> Box:
+        if id(step) not in self._boxes:
+            self._boxes[id(step)] = box_of(step)
+        return self._boxes[id(step)]
