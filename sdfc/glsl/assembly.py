@@ -86,7 +86,7 @@ class _Assembly:
         if tracer.needs_steps:
             trace = ProvenWriter(self._graph, self._functions, self._live, many).write(plan.root)
         has_map = tracer.needs_map or self._lit
-        distance = DistanceWriter(self._graph, self._functions, self._live, plan.slopes, many)
+        distance = DistanceWriter(self._graph, self._functions, self._live, plan.slopes, many, tracer.needs_map)
         map_text = distance.write(plan.root) if has_map else ""
         recorded = many if tracer.needs_steps else None
         surfaces = SurfaceWriter(self._graph, self._functions, self._live, plan.materials, recorded)
@@ -106,7 +106,7 @@ class _Assembly:
             "lift": literal(LIFT),
             "most_steps": self._most_steps(),
             "needs_marching": trace.march or tracer.needs_map or bool(many.tables),
-            "needs_map_library": "box_distance" in map_text,
+            "needs_map_library": "within(" in map_text or "box_distance" in map_text,
             "map": map_text,
             "tables": "\n".join(many.tables),
             "trace": trace,

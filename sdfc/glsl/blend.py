@@ -38,10 +38,10 @@ class BlendWriter:
             body.add(f"vec2 v_{part.name} = {self.slope(body, part, directions[id(part)], Role.DISTANCE_SLOPE)};", part.span)
         arguments = ", ".join(f"v_{part.name}" for part in parts)
         body.add(f"float v_{name} = {name}_ahead(0.0, {arguments});", blend.part.span)
-        body.add(f"float left_{name} = {name}_clear(v_{name}, eps, {arguments});")
+        body.add(f"float left_{name} = {name}_clear(v_{name}, fine, {arguments});")
         least = literal(1.0 / max(blend.lipschitz, 1e-9))
         step = f"max(left_{name}, {least} * v_{name})" if blend.lipschitz != 1.0 else f"max(left_{name}, v_{name})"
-        return f"ball(t, v_{name} <= eps ? v_{name} : {step}, eps)"
+        return f"ball(t, v_{name} <= fine ? v_{name} : {step}, fine)"
 
     def _function(self, blend: Blend, parts: list[Part]) -> None:
         name = blend.part.name

@@ -12,19 +12,24 @@ from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
-from sdfc.plan.steps import All, Any, Ball, Blend, Closed, Many, Part, Step, Tangent, Within
+from sdfc.plan.steps import All, Any, Ball, Blend, Chord, Closed, Many, Part, Step, Tangent, Within
 
 
 class DistanceWriter:
-    """Writes one scene's distance, as a chain of statements, one a part."""
+    """Writes one scene's distance, as a chain of statements, one a part.
+
+    Where it only tells how open the sky is, a part whose value means something only in its box is ignored outside:
+    the distance to that box, though a bound, would show as a shadow of the box.
+    """
 
     def __init__(
-        self, graph: FieldGraph, functions: Functions, live: Live, slopes: dict[int, float], many: ManyWriter
+        self, graph: FieldGraph, functions: Functions, live: Live, slopes: dict[int, float], many: ManyWriter, traced: bool
     ) -> None:
         self._graph = graph
         self._functions = functions
         self._live = live
         self._many = many
+        self._traced = traced
         self._slopes = slopes  # the Lipschitz constant of each part's formula, by id
         self._count = 0
 
@@ -44,6 +49,8 @@ class DistanceWriter:
                 self._count += 1
                 self._many.value(step, body, f"d{self._count}")
                 return f"d{self._count}"
+            case Chord():
+                return self._value(step.part, body, False)
             case Within():
                 return self._within(step, body) if step.is_needed else self._fold(step.step, body)
             case Any():
@@ -81,12 +88,13 @@ class DistanceWriter:
         centre = ", ".join(literal(c) for c in step.box.centre)
         half = ", ".join(literal(h) for h in step.box.half)
         margin = literal(1e-3 * step.box.radius)
-        return f"within(box_distance(p - vec3({centre}), vec3({half})), {inner}, {margin})"
+        outside = "box_distance" if self._traced else "far_outside"
+        return f"within({outside}(p - vec3({centre}), vec3({half})), {inner}, {margin})"
 
 
 def _span(step: Step) -> Span | None:
     match step:
-        case Closed() | Tangent() | Ball() | Blend():
+        case Closed() | Tangent() | Chord() | Ball() | Blend():
             return step.part.span
         case Within() | Any() | All() | Many():
             return None

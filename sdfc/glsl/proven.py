@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias, assert_never
 
+from sdfc.facts.box import Box
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.glsl.blend import BlendWriter
 from sdfc.glsl.body import Body, own_direction, own_point
@@ -17,6 +18,7 @@ from sdfc.plan.steps import (
     Any,
     Ball,
     Blend,
+    Chord,
     Closed,
     Many,
     Part,
@@ -130,7 +132,7 @@ class ProvenWriter:
         inner = Body(self._live, 2)
         inner.add("t = next;")
         inner.add("vec3 p = o + t * d;")
-        inner.add("float eps = tolerance(t);")
+        inner.add("float eps = tolerance(t), fine = rounding(t);")
         inner.add(f"next = {self._next(root, inner, names, directions)};")
         inner.add("steps += 1.0;")
         inner.add("count += 1;")
@@ -145,10 +147,10 @@ class ProvenWriter:
     def _boxes(self, body: Body, step: Step) -> None:
         match step:
             case Within():
-                centre = ", ".join(literal(c) for c in step.box.centre)
-                half = ", ".join(literal(h) for h in step.box.half)
-                body.add(f"vec2 {step.name} = box_interval(o - vec3({centre}), d, vec3({half}));")
+                self._box(body, step.name, step.box)
                 self._boxes(body, step.step)
+            case Chord():
+                self._box(body, step.name, step.part.box)
             case Any() | All():
                 for child in step.steps:
                     self._boxes(body, child)
@@ -157,12 +159,16 @@ class ProvenWriter:
             case _:
                 assert_never(step)
 
+    def _box(self, body: Body, name: str, box: Box) -> None:
+        centre, half = (", ".join(map(literal, numbers)) for numbers in (box.centre, box.half))
+        body.add(f"vec2 {name} = box_interval(o - vec3({centre}), d, vec3({half}));")
+
     def _directions(self, body: Body, root: Step) -> dict[int, Expr]:
         """The ray's direction in the own space of each tangent's part: the same all along the ray."""
         found: dict[int, Expr] = {}
         for leaf in leaves_of(root):
             match leaf:
-                case Tangent(part=part):
+                case Tangent(part=part) | Chord(part=part):
                     parts = [part]
                 case Blend():
                     parts = self._blends.parts_of(leaf)
@@ -192,7 +198,7 @@ class ProvenWriter:
                 return _chain("min", [self._start(s, names) for s in step.steps])
             case All():
                 return _chain("max", [self._start(s, names) for s in step.steps])
-            case Closed() | Many() | Tangent() | Ball() | Blend() | Any():
+            case Closed() | Many() | Tangent() | Chord() | Ball() | Blend() | Any():
                 return "start"
             case _:
                 assert_never(step)
@@ -209,7 +215,9 @@ class ProvenWriter:
                 raise AssertionError("many parts are members of the scene's union, which is solved by events")
             case Tangent():
                 value = self._blends.slope(body, step.part, (directions or {})[id(step.part)])
-                return f"tangent(t, {value}, eps)"
+                return f"tangent(t, {value}, fine)"
+            case Chord():
+                return self._chord(step, body, (directions or {})[id(step.part)])
             case Ball():
                 return self._ball(step, body)
             case Blend():
@@ -259,6 +267,18 @@ class ProvenWriter:
             texts.append(f"enter({_chain('both', [names[id(s.part), True] for s in convex])}, t)")
             steps = tuple(s for s in steps if s not in convex)
         return texts + [self._next(s, body, names, directions) for s in steps]
+
+    def _chord(self, step: Chord, body: Body, direction: Expr) -> str:
+        """The value is looked at once more, where the tangent (or the part's box) ends."""
+        part, name = step.part, step.part.name
+        body.add(f"vec2 v_{name} = {self._blends.slope(body, part, direction)};", part.span)
+        body.add(f"float reach_{name} = chord_reach(t, v_{name}, {step.name}.y, fine);")
+        end = self._graph.input(f"p_{name}")
+        body.add(f"vec3 p_{name} = p + reach_{name} * d;")
+        q = body.point(own_point(part.inverse, end), f"q_{name}_end")
+        text = body.call(self._functions.of_part(part, Role.SLOPE), [q, body.text(direction)])
+        scale = "" if part.stretch.is_constant and part.stretch.number == 1.0 else f"{body.text(part.stretch)} * "
+        return f"chord(t, v_{name}.x, reach_{name}, {scale}{text}.x, fine)"
 
     def _ball(self, step: Ball, body: Body) -> str:
         part = step.part

@@ -13,7 +13,7 @@ from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
 from sdfc.plan.gather import is_translation
-from sdfc.plan.steps import All, Any, Ball, Blend, BlendNode, BlendTree, BlendUnion, Closed, Many, Part, Step, Tangent, Within
+from sdfc.plan.steps import All, Any, Ball, Blend, BlendNode, BlendTree, BlendUnion, Chord, Closed, Many, Part, Step, Tangent, Within
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
 
@@ -125,6 +125,8 @@ class SurfaceWriter:
                 return self._leaf(step.part, body, step.inside, Role.SURFACE)
             case Tangent():
                 return self._leaf(step.part, body, True, Role.SURFACE)
+            case Chord():
+                return self._leaf(step.part, body, False, Role.SURFACE)
             case Many():
                 return self._nearest(step, body)
             case Blend():

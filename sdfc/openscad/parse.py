@@ -15,6 +15,7 @@ from sdfc.openscad.syntax import Argument, Call, Value
 from sdfc.syntax.tables import load
 
 LARGEST = 1e12
+FLATTEN = "flattened CSG has no variables: write it with `openscad -o model.csg model.scad`"
 _WORDS: dict[str, Value] = {"true": True, "false": False, "undef": None}
 _READABLE = {
     "_LEFT": "`(`",
@@ -121,7 +122,7 @@ def _wrong_value(source: Source, token: Token) -> SceneError:
         return scene_error(
             f"`{token}` has no value here",
             span,
-            "flattened CSG has no variables: write it with `openscad -o x.csg x.scad`",
+            FLATTEN,
         )
     return scene_error("this is no number, or too large a one", span, f"numbers go to {LARGEST:g}")
 
@@ -142,7 +143,7 @@ def _unexpected(source: Source, error: UnexpectedInput) -> SceneError:
         case UnexpectedCharacters():
             start = error.pos_in_stream or 0
             span = Span(source, start, start + 1)
-            hint = f"expected {_expected(error.allowed or ())}"
+            hint = FLATTEN if text[start] == "=" else f"expected {_expected(error.allowed or ())}"
             return scene_error(f"{text[start]!r} is not expected here", span, hint)
     return scene_error("this is not flattened CSG", Span(source, 0, 1))
 

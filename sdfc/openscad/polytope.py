@@ -27,7 +27,9 @@ class Polytope:
 
 def hull(points: Sequence[Point]) -> Polytope | None:
     """The smallest convex solid with these points; None where they lie in one plane."""
-    extent = max((max(p[axis] for p in points) - min(p[axis] for p in points) for axis in range(3)), default=0.0)
+    if len(points) < 4:
+        return None
+    extent = max(max(p[axis] for p in points) - min(p[axis] for p in points) for axis in range(3))
     if not extent > 0.0:
         return None
     step = math.ldexp(1.0, math.frexp(extent)[1] - GRID_BITS)

@@ -6,7 +6,7 @@ from typing import assert_never
 
 from sdfc.passes.own_origin import Frame
 from sdfc.plan.plan import Plan
-from sdfc.plan.steps import All, Any, Ball, Blend, Closed, Many, Step, Tangent, Within, is_closed, leaves_of
+from sdfc.plan.steps import All, Any, Ball, Blend, Chord, Closed, Many, Step, Tangent, Within, is_closed, leaves_of
 from sdfc.scene.model import Scene
 
 
@@ -44,6 +44,8 @@ def _tree(step: Step, depth: int) -> list[str]:
             return [f"{pad}{len(step.members)} of {step.name}: closed form, 1 interval a ray; a row of a table each"]
         case Tangent():
             return [f"{pad}{step.part.name} ({step.part.span}): tangents, its function is convex"]
+        case Chord():
+            return [f"{pad}complement of {step.part.name} ({step.part.span}): chords, its function is convex"]
         case Ball():
             side = "" if step.inside else "complement of "
             reason = f"Lipschitz balls, constant {step.lipschitz:.4g}: curvature unknown"

@@ -12,7 +12,7 @@ from sdfc.tracers.record import Tracer
 # Units of the scene's own radius. A ray's intervals are right to about three roundings of numbers up to one.
 GROW = 2.0**-22
 CUT = 2.0**-20
-SMALLEST_TOLERANCE = 2.0**-20  # eight roundings
+SMALLEST_TOLERANCE = 2.0**-19  # sixteen roundings of numbers up to one
 LIFT = 2.0**-17  # how far shadow rays start above the surface: clear of CUT and of rounding
 HORIZON = 1e5  # how far rays are marched in a scene without end
 MOST_LOOPS = 60000  # llvmpipe stops all loops of an invocation together at 65 535 (GL.md 0)

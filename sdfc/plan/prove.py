@@ -22,6 +22,7 @@ from sdfc.plan.steps import (
     BlendNode,
     BlendTree,
     BlendUnion,
+    Chord,
     Closed,
     Part,
     Step,
@@ -136,6 +137,9 @@ class Prover:
             return Closed(part, self._intervals(leaf.shape), leaf.inside)
         if leaf.inside and self._is_tangent(leaf.shape):
             return Tangent(part)
+        if not leaf.inside and self._is_tangent(leaf.shape) and part.box.is_finite:
+            self._boxes += 1
+            return Chord(part, f"bounds_{self._boxes}")
         tree = self._blend_tree(leaf) if leaf.inside else None
         own = part.box if leaf.inside else everything()
         where = own.meet(domain)

@@ -64,6 +64,14 @@ class Tangent:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Chord:
+    """The complement of a convex function, which is concave: where both ends of a stretch are empty, all of it is."""
+
+    part: Part
+    name: str  # of the part's box along the ray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Ball:
     """A field known to be Lipschitz: the empty ball around the point."""
 
@@ -120,7 +128,7 @@ class All:
     steps: tuple[Step, ...]
 
 
-Step: TypeAlias = Closed | Many | Tangent | Ball | Blend | Within | Any | All
+Step: TypeAlias = Closed | Many | Tangent | Chord | Ball | Blend | Within | Any | All
 
 
 def is_closed(step: Step) -> bool:
@@ -128,16 +136,19 @@ def is_closed(step: Step) -> bool:
     match step:
         case Closed() | Many():
             return True
-        case Tangent() | Ball() | Blend() | Within():
+        case Tangent() | Chord() | Ball() | Blend() | Within():
             return False
         case Any() | All():
             return all(is_closed(s) for s in step.steps)
 
 
-def leaves_of(step: Step) -> list[Closed | Tangent | Ball | Blend]:
+Leaf: TypeAlias = Closed | Tangent | Chord | Ball | Blend
+
+
+def leaves_of(step: Step) -> list[Leaf]:
     """The leaves, in order."""
     match step:
-        case Closed() | Tangent() | Ball() | Blend():
+        case Closed() | Tangent() | Chord() | Ball() | Blend():
             return [step]
         case Many():
             return list(step.members)

@@ -1,4 +1,4 @@
-"""What the CPU renderer evaluates of a part: its formulas in the scene's space as NumPy, each prepared when first used."""
+"""What the CPU renderer evaluates of a part: its formulas in the scene's space, each prepared when first used."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from sdfc.field.function import Function
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.field.numeric import Evaluator
 from sdfc.plan.steps import Part
+from sdfc.shape.definition import Environment, Kind
 from sdfc.shape.graph import Apply
-from sdfc.shape.lower import Lowering, lower_ray
+from sdfc.shape.lower import Lowering
 from sdfc.shape.material import Material
 
 Array = NDArray[np.float64]
@@ -31,6 +32,17 @@ PROPERTIES = {
 }
 """The rows of a stack of material properties, (13, n)."""
 
+_TYPES = {
+    Kind.NUMBER: Type.FLOAT,
+    Kind.LENGTH: Type.FLOAT,
+    Kind.ANGLE: Type.FLOAT,
+    Kind.VECTOR2: Type.VEC2,
+    Kind.POINT2: Type.VEC2,
+    Kind.VECTOR3: Type.VEC3,
+    Kind.POINT3: Type.VEC3,
+}
+"""The kinds of parameters whose values a formula may be shared over."""
+
 
 @dataclass(frozen=True, slots=True)
 class Interval:
@@ -38,6 +50,29 @@ class Interval:
 
     enter: Array
     leave: Array
+
+
+@dataclass(frozen=True, slots=True)
+class _Own:
+    """A part's own space at given values of the params: `linear` p + `offset`, the identity where None.
+
+    Primitives of one definition share their formulas, in which `environment` has PARAM nodes; `arguments` are their
+    values here. `owner` tells formulas apart.
+    """
+
+    owner: int
+    environment: Environment
+    arguments: dict[str, Array]
+    linear: Array | None
+    offset: Array
+    stretch: float
+    grow: float
+
+    def point(self, p: Array) -> Array:
+        return p if self.linear is None else self.linear @ p + self.offset
+
+    def direction(self, d: Array) -> Array:
+        return d if self.linear is None else self.linear @ d
 
 
 class Formulas:
@@ -48,46 +83,58 @@ class Formulas:
         self._params = params
         self._lowering = Lowering()
         self._evaluators: dict[tuple[str, int], Evaluator] = {}
+        self._owns: dict[int, _Own] = {}
         self._p, self._o, self._d = (graph.input(name) for name in "pod")
 
     def intervals(self, part: Part, o: Array, d: Array, grow: float) -> list[Interval]:
         """The closed-form intervals of the rays with the part, the solid `grow` larger (a length in the scene)."""
+        own = self._own(part)
 
         def roots() -> list[Expr]:
-            own_o, own_d = self._o, self._d
-            if part.inverse is not None:
-                own_o, own_d = part.inverse.apply(own_o), part.inverse.direction(own_d)
-            pairs = lower_ray(part.shape, own_o, own_d, part.own_grow * grow)
+            ray = part.shape.definition.claims.ray
+            assert ray is not None
+            pairs = ray(self._o, self._d, self._graph.param("grow"), own.environment)
             return [end for pair in pairs for end in pair]
 
-        ends = self._evaluate(f"ray {grow}", id(part), roots, {"o": o, "d": d})
+        inputs = {"o": own.point(o), "d": own.direction(d)}
+        ends = self._evaluate("ray", own.owner, roots, inputs, {**own.arguments, "grow": np.array(own.grow * grow)})
         ends = [np.broadcast_to(e, o.shape[1:]) for e in ends]
         return [Interval(enter, leave) for enter, leave in zip(ends[::2], ends[1::2], strict=True)]
 
     def value(self, part: Part, p: Array) -> Array:
         """The part's formula, (n,), in the scene's units."""
-        return self._one("value", part, lambda: self._formula(part), p)
+        own = self._own(part)
+        inputs = {"p": own.point(p)}
+        (value,) = self._evaluate("value", own.owner, lambda: [self._formula(part, own)], inputs, own.arguments)
+        return np.broadcast_to(value, p.shape[1:]) * own.stretch
 
     def slope(self, part: Part, p: Array, d: Array) -> tuple[Array, Array]:
         """A convex function of the part and its derivative along d, (n,) each."""
+        own = self._own(part)
 
         def roots() -> list[Expr]:
-            value = self._sharp(part)
+            value = self._sharp(part, own)
             return [value, directional(value, {self._p: self._d})]
 
-        value, along = self._evaluate("slope", id(part), roots, {"p": p, "d": d})
-        return np.broadcast_to(value, p.shape[1:]), np.broadcast_to(along, p.shape[1:])
+        inputs = {"p": own.point(p), "d": own.direction(d)}
+        value, along = self._evaluate("slope", own.owner, roots, inputs, own.arguments)
+        shape = p.shape[1:]
+        return np.broadcast_to(value, shape) * own.stretch, np.broadcast_to(along, shape) * own.stretch
 
     def surface(self, part: Part, p: Array, formula: bool = False) -> Array:
         """Gradient and value, (4, n), of a function whose zero set is the surface; of the formula itself if asked."""
+        own = self._own(part)
 
         def roots() -> list[Expr]:
-            value = self._formula(part) if formula else self._sharp(part)
-            normal = gradient(value, self._p)
-            return [self._graph.vector(normal[0], normal[1], normal[2], value)]
+            value = self._formula(part, own) if formula else self._sharp(part, own)
+            return [gradient(value, self._p), value]
 
-        (field,) = self._evaluate(f"surface {formula}", id(part), roots, {"p": p})
-        return np.broadcast_to(field, (4, p.shape[1]))
+        inputs = {"p": own.point(p)}
+        normal, value = self._evaluate(f"surface {formula}", own.owner, roots, inputs, own.arguments)
+        normal = np.broadcast_to(normal, p.shape)
+        if own.linear is not None:
+            normal = own.linear.T @ normal
+        return np.concatenate([normal, np.broadcast_to(value, (1, p.shape[1]))]) * own.stretch
 
     def weights(self, blend: Apply, a: Array, b: Array) -> tuple[Array, Array, Array]:
         """A blend's derivatives by its two operands, and its value, (n,) each, for the operands' values."""
@@ -95,20 +142,14 @@ class Formulas:
         def roots() -> list[Expr]:
             graph = self._graph
             values = [graph.input(name, Type.FLOAT) for name in ("a", "b")]
-            children: dict[str, Callable[[Expr], Expr]] = {
-                parameter.name: lambda _, value=value: value
-                for parameter, value in zip(blend.definition.children, values, strict=True)
-            }
+            names = [parameter.name for parameter in blend.definition.children]
+            children = {name: _always(value) for name, value in zip(names, values, strict=True)}
             result = blend.definition.formula(self._p, blend.environment, children)
             one = graph.constant(1.0)
             return [*(directional(result, {value: one}) for value in values), result]
 
         first, second, value = self._evaluate("weights", blend.id, roots, {"a": a, "b": b})
         return np.broadcast_to(first, a.shape), np.broadcast_to(second, a.shape), np.broadcast_to(value, a.shape)
-
-    def stretch(self, part: Part) -> float:
-        """What a value in the part's own space is multiplied with, at these params."""
-        return float(self.constant(part.stretch)[0])
 
     def constant(self, value: Expr) -> Array:
         """The components of an expression over params alone."""
@@ -124,26 +165,53 @@ class Formulas:
         """A shading function over arrays: (n,) for a FLOAT, (k, n) for a VECk; (k, 1) is the same for all points."""
         return self._evaluate(function.name, -1, lambda: [function.result], arguments)[0]
 
-    def _formula(self, part: Part) -> Expr:
-        q = self._p if part.inverse is None else part.inverse.apply(self._p)
-        return self._lowering.value(part.shape, q) * part.stretch
+    def _formula(self, part: Part, own: _Own) -> Expr:
+        definition = part.shape.definition
+        if definition.is_primitive:
+            return definition.formula(self._p, own.environment, {})
+        return self._lowering.value(part.shape, self._p)
 
-    def _sharp(self, part: Part) -> Expr:
+    def _sharp(self, part: Part, own: _Own) -> Expr:
         """The primitive's gauge where there is one: its gradient is sharp at edges, and convex where the solid is."""
         gauge = part.shape.definition.claims.gauge
         if gauge is None or not part.shape.definition.is_primitive:
-            return self._formula(part)
-        q = self._p if part.inverse is None else part.inverse.apply(self._p)
-        return gauge(q, part.shape.environment) * part.stretch
+            return self._formula(part, own)
+        return gauge(self._p, own.environment)
 
-    def _one(self, role: str, part: Part, root: Callable[[], Expr], p: Array) -> Array:
-        (value,) = self._evaluate(role, id(part), lambda: [root()], {"p": p})
-        return np.broadcast_to(value, p.shape[1:])
+    def _own(self, part: Part) -> _Own:
+        if id(part) not in self._owns:
+            self._owns[id(part)] = self._made(part)
+        return self._owns[id(part)]
+
+    def _made(self, part: Part) -> _Own:
+        definition, graph = part.shape.definition, self._graph
+        owner, environment, arguments = id(part), dict(part.shape.environment), {}
+        if definition.is_primitive and all(p.kind in _TYPES for p in definition.values):
+            owner = id(definition)
+            given = {name: self.constant(a) for name, a in environment.items() if isinstance(a, Expr)}
+            arguments = {f"its {name}": value for name, value in given.items()}
+            environment = {p.name: graph.param(f"its {p.name}", _TYPES[p.kind]) for p in definition.values}
+        linear, offset = None, np.zeros((3, 1))
+        if part.inverse is not None:
+            linear = np.array([[float(self.constant(e)[0]) for e in row] for row in part.inverse.linear])
+            offset = np.array([[float(self.constant(e)[0])] for e in part.inverse.offset])
+        stretch, grow = (float(self.constant(e)[0]) for e in (part.stretch, part.own_grow))
+        return _Own(owner, environment, arguments, linear, offset, stretch, grow)
 
     def _evaluate(
-        self, role: str, owner: int, roots: Callable[[], list[Expr]], inputs: Mapping[str, Array]
+        self,
+        role: str,
+        owner: int,
+        roots: Callable[[], list[Expr]],
+        inputs: Mapping[str, Array],
+        arguments: Mapping[str, Array] | None = None,
     ) -> list[Array]:
         key = (role, owner)
         if key not in self._evaluators:
             self._evaluators[key] = Evaluator(roots())
-        return self._evaluators[key](inputs, self._params)
+        return self._evaluators[key](inputs, {**self._params, **(arguments or {})})
+
+
+def _always(value: Expr) -> Callable[[Expr], Expr]:
+    """A child that has one value everywhere."""
+    return lambda _: value

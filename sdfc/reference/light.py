@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Hits:
-    """What rays (n of them) that hit something hit: points and normals are (3, n), `travelled` (n,) is to the points."""
+    """Where n rays hit: points and normals are (3, n), `travelled` (n,) is the path's length up to the points."""
 
     p: Array
     normal: Array
@@ -53,8 +53,8 @@ class Shader:
         self._formulas = formulas
         self._functions = {name: build(graph) for name, build in FUNCTIONS.items()}
         sky = setting.sky
-        colors = (sky.zenith, sky.horizon, sky.ground)
-        self._sky = {n: _column(formulas.constant(c)) for n, c in zip(("zenith", "horizon", "ground"), colors, strict=True)}
+        colors = {"zenith": sky.zenith, "horizon": sky.horizon, "ground": sky.ground}
+        self._sky = {name: _column(formulas.constant(color)) for name, color in colors.items()}
         self._sky["up"] = _column(np.array(setting.up))
 
     def background(self, d: Array) -> Array:
@@ -106,7 +106,8 @@ class Shader:
         match light:
             case Sun():
                 toward, irradiance = self._sun(light)
-                return _Lit(np.broadcast_to(toward, p.shape), np.full(p.shape[1], FAR), np.broadcast_to(irradiance, p.shape))
+                far = np.full(p.shape[1], FAR)
+                return _Lit(np.broadcast_to(toward, p.shape), far, np.broadcast_to(irradiance, p.shape))
             case PointLight():
                 position = self._formulas.constant(light.position) - np.array(self._plan.centre)
                 offset = _column(position / self._plan.radius) - p

@@ -25,7 +25,7 @@ class Rays:
     cone: tuple[float, float]
 
     def __len__(self) -> int:
-        return self.o.shape[1]
+        return int(self.o.shape[1])
 
     def take(self, index: NDArray[np.int64]) -> Rays:
         """Some of them."""
@@ -58,4 +58,5 @@ def box_distance(p: Array, box: Box) -> Array:
     low, high = (np.array(v)[:, None] for v in (box.lo, box.hi))
     q = np.maximum(low - p, p - high)
     outside: Array = np.sqrt(np.sum(np.maximum(q, 0.0) ** 2, axis=0))
-    return outside + np.minimum(np.max(q, axis=0), 0.0)
+    inside: Array = np.minimum(np.max(q, axis=0), 0.0)
+    return outside + inside

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -35,6 +36,7 @@ INTERVALS_AT_ONCE = 1 << 22
 class Compiled(Protocol):
     """What is read of a compiled scene (sdfc.pipeline makes it)."""
 
+    def __hash__(self) -> int: ...
     @property
     def scene(self) -> Scene: ...
     @property
@@ -93,6 +95,12 @@ class _Studio:
         return np.where(slope < -0.05, np.clip(step, -most, most), 0.0)
 
 
+@lru_cache(maxsize=1)
+def _studio(compiled: Compiled, params: tuple[tuple[str, tuple[float, ...]], ...]) -> _Studio:
+    """The last one is kept: a picture is made of many samples, and its formulas are prepared once."""
+    return _Studio(compiled, dict(params))
+
+
 def radiance(
     compiled: Compiled,
     view: CameraChange,
@@ -102,7 +110,7 @@ def radiance(
     progress: Progress | None = None,
 ) -> Array:
     """Linear radiance and whether something was hit, (height, width, 4), rows from the top; `jitter` in pixels."""
-    studio = _Studio(compiled, params)
+    studio = _studio(compiled, tuple(sorted(params.items())))
     picture = np.zeros((size[0] * size[1], 4))
     for chunk, rays in _bundles(studio.plan, compiled.uniforms(view, params, size, jitter), size, progress):
         seen = studio.look(rays)
@@ -120,12 +128,12 @@ def probe(
     params: Params,
     size: tuple[int, int],
     progress: Progress | None = None,
-) -> list[Array]:
+) -> list[NDArray[np.floating]]:
     """At the pixels' centres, (height, width, 4) each, rows from the top, in the scene's units.
 
     (depth, steps, material, hit), (normal, 0), (position, 0), (ray direction, 0); depth and material are -1 for a miss.
     """
-    studio = _Studio(compiled, params)
+    studio = _studio(compiled, tuple(sorted(params.items())))
     images = [np.zeros((size[0] * size[1], 4)) for _ in range(4)]
     plan = studio.plan
     for chunk, rays in _bundles(plan, compiled.uniforms(view, params, size), size, progress):
@@ -138,7 +146,8 @@ def probe(
         normal[seen.hit, :3] = _unit(seen.hits.surface.field[:3]).T
         position[seen.hit, :3] = seen.hits.p.T * plan.radius + np.array(plan.centre)
         direction[:, :3] = rays.d.T
-    return [image.reshape(size[1], size[0], 4) for image in images]
+    buffers: list[NDArray[np.floating]] = [image.reshape(size[1], size[0], 4) for image in images]
+    return buffers
 
 
 def _bundles(
@@ -155,7 +164,7 @@ def _bundles(
 
 
 def _camera_rays(uniforms: Uniforms, pixels: NDArray[np.int64], size: tuple[int, int]) -> Rays:
-    """The rays of pixels numbered by rows from the top, each with its origin moved to where it is nearest the scene's."""
+    """The rays of pixels numbered by rows from the top, each from where it is nearest the scene's origin."""
     eye, axis_x, axis_y, axis_z = (np.reshape(uniforms[n], (3, 1)) for n in ("eye", "axis_x", "axis_y", "axis_z"))
     width, height = size
     _, _, jitter_x, jitter_y = np.ravel(uniforms["window"])
@@ -170,4 +179,5 @@ def _camera_rays(uniforms: Uniforms, pixels: NDArray[np.int64], size: tuple[int,
 
 
 def _unit(v: Array) -> Array:
-    return v / np.maximum(np.sqrt(np.sum(v * v, axis=0)), 1e-30)
+    unit: Array = v / np.maximum(np.sqrt(np.sum(v * v, axis=0)), 1e-30)
+    return unit

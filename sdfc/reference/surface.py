@@ -11,7 +11,23 @@ from numpy.typing import NDArray
 
 from sdfc.facts.box import Box
 from sdfc.plan.plan import Plan
-from sdfc.plan.steps import All, Any, Ball, Blend, BlendNode, BlendTree, BlendUnion, Closed, Many, Part, Step, Tangent, Within
+from sdfc.plan.steps import (
+    All,
+    Any,
+    Ball,
+    Blend,
+    BlendNode,
+    BlendTree,
+    BlendUnion,
+    Chord,
+    Closed,
+    Many,
+    Part,
+    Step,
+    Tangent,
+    Within,
+    is_closed,
+)
 from sdfc.reference.formulas import Formulas
 from sdfc.reference.rays import box_distance
 from sdfc.reference.trace import FAR, box_of, members_of
@@ -28,8 +44,8 @@ class Surface:
     material: NDArray[np.int64]
     look: Array
 
-    def where(self, index: NDArray[np.int64], other: Surface) -> None:
-        """Takes over `other`'s rows at `index`."""
+    def put(self, index: NDArray[np.int64], other: Surface) -> None:
+        """Takes over all of `other` at `index`."""
         self.field[:, index] = other.field
         self.material[index] = other.material
         self.look[:, index] = other.look
@@ -54,7 +70,7 @@ class SurfaceFold:
         return self._fold(self._plan.root, p)
 
     def distance(self, p: Array, reach: float) -> Array:
-        """A lower bound (n,) of the distance to the scene, with the right sign; right up to `reach` only."""
+        """What tells how open the sky is: at most the distance (n,) to what is within `reach`; the right sign."""
         return self._distance(self._plan.root, p, reach)
 
     # surfaces
@@ -65,6 +81,8 @@ class SurfaceFold:
                 return self._leaf(step.part, p, step.inside)
             case Tangent():
                 return self._leaf(step.part, p, True)
+            case Chord():
+                return self._leaf(step.part, p, False)
             case Blend():
                 return self._blend(step.tree, p)
             case Within():
@@ -75,7 +93,7 @@ class SurfaceFold:
                 first, *rest = (self._fold(s, p) for s in step.steps)
                 for other in rest:
                     farther = np.flatnonzero(other.field[3] > first.field[3])
-                    first.where(farther, other.take(farther))
+                    first.put(farther, other.take(farther))
                 return first
             case _:
                 assert_never(step)
@@ -88,7 +106,7 @@ class SurfaceFold:
             if near.size:
                 found = self._fold(member, p[:, near])
                 nearer = np.flatnonzero(found.field[3] < result.field[3, near])
-                result.where(near[nearer], found.take(nearer))
+                result.put(near[nearer], found.take(nearer))
         return result
 
     def _leaf(self, part: Part, p: Array, inside: bool, formula: bool = False) -> Surface:
@@ -105,7 +123,7 @@ class SurfaceFold:
                 first, *rest = (self._blend(t, p) for t in tree.operands)
                 for other in rest:
                     nearer = np.flatnonzero(other.field[3] < first.field[3])
-                    first.where(nearer, other.take(nearer))
+                    first.put(nearer, other.take(nearer))
                 return first
             case BlendNode():
                 return self._blended(tree, self._blend(tree.first, p), self._blend(tree.second, p))
@@ -132,23 +150,34 @@ class SurfaceFold:
                 return self._value(step.part, p, step.inside)
             case Tangent() | Blend():
                 return self._value(step.part, p, True)
+            case Chord():
+                return self._value(step.part, p, False)
             case Within():
                 inner = self._distance(step.step, p, reach)
                 if not step.is_needed:
                     return inner
-                box = box_distance(p, step.box)
-                return np.where(box > 1e-3 * step.box.radius, box, inner)
+                # outside, the value means nothing; the box's distance, though a bound, would shade like a box
+                return np.where(box_distance(p, step.box) > 0.0, FAR, inner)
             case Any() | Many():
                 result = np.full(p.shape[1], FAR)
                 for member in members_of(step):
-                    near = np.flatnonzero(box_distance(p, self._box(member)) < reach)
+                    near = self._within_reach(member, p, reach)
                     if near.size:
                         result[near] = np.minimum(result[near], self._distance(member, p[:, near], reach))
                 return result
             case All():
-                return np.maximum.reduce([self._distance(s, p, reach) for s in step.steps])
+                result = self._distance(step.steps[0], p, reach)
+                for other in step.steps[1:]:
+                    result = np.maximum(result, self._distance(other, p, reach))
+                return result
             case _:
                 assert_never(step)
+
+    def _within_reach(self, member: Step, p: Array, reach: float) -> NDArray[np.int64]:
+        """The points that `member` may be near to. Only primitives measure distances no worse than their boxes do."""
+        if not is_closed(member):
+            return np.arange(p.shape[1])
+        return np.flatnonzero(box_distance(p, self._box(member)) < reach)
 
     def _value(self, part: Part, p: Array, inside: bool) -> Array:
         slope = self._plan.slopes[id(part)]

@@ -9,8 +9,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdfc.facts.box import Box, everything, nothing
-from sdfc.plan.plan import SMALLEST_TOLERANCE, Plan
-from sdfc.plan.steps import All, Any, Ball, Blend, Closed, Many, Part, Step, Tangent, Within, is_closed, leaves_of
+from sdfc.plan.plan import Plan
+from sdfc.plan.steps import (
+    All,
+    Any,
+    Ball,
+    Blend,
+    Chord,
+    Closed,
+    Many,
+    Part,
+    Step,
+    Tangent,
+    Within,
+    is_closed,
+    leaves_of,
+)
 from sdfc.reference.formulas import Formulas, Interval
 from sdfc.reference.rays import Rays, box_interval
 
@@ -23,7 +37,9 @@ SHY = 1.0 - 1e-12  # a step stays this much short of what is proved, for the rou
 MARGIN = 1e-6  # boxes are this much larger than what they hold
 MOST_STEPS = 4096
 PROVEN_TOLERANCE = 1 / 64
-"""How near counts as there, in half pixels."""
+"""How near counts as there, in half pixels ..."""
+SMALLEST_TOLERANCE = 2.0**-20
+"""... but not nearer than this, in units of the scene's radius."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +89,7 @@ class StepTracer:
         return np.maximum(SMALLEST_TOLERANCE, PROVEN_TOLERANCE * rays.half_pixel(t))
 
     def _solve(self, member: Step, rays: Rays, start: Array, limit: Array) -> tuple[Array, Array]:
-        """Steps until the tree answers where the ray is, or past the limit. Only rays still on their way are stepped."""
+        """Steps until the tree answers where the ray is, or past the limit; only rays still on their way."""
         walk = self._walk(member, rays)
         closed = is_closed(member)
         t = self._start(member, walk, start)
@@ -101,7 +117,7 @@ class StepTracer:
                     intervals[id(part), inside] = self._formulas.intervals(part, rays.o, rays.d, grow)
                 case _:
                     pass
-        boxes = {id(within): box_interval(rays, within.box) for within in _boxed(member)}
+        boxes = {id(step): box_interval(rays, box) for step, box in _boxes_below(member)}
         return _Walk(intervals, boxes)
 
     def _start(self, step: Step, walk: _Walk, start: Array) -> Array:
@@ -113,9 +129,9 @@ class StepTracer:
                 enter, leave = walk.boxes[id(step)]
                 return _enter([Interval(enter, leave)], start)
             case (Any() | Many()) if members_of(step):
-                return np.minimum.reduce([self._start(s, walk, start) for s in members_of(step)])
+                return _least([self._start(s, walk, start) for s in members_of(step)])
             case All() if step.steps:
-                return np.maximum.reduce([self._start(s, walk, start) for s in step.steps])
+                return _greatest([self._start(s, walk, start) for s in step.steps])
             case _:
                 return start.copy()
 
@@ -127,6 +143,8 @@ class StepTracer:
                 return _enter(taken, here.t) if step.inside else _leave(taken, here.t)
             case Tangent():
                 return self._tangent(step.part, here)
+            case Chord():
+                return self._chord(step, walk, here)
             case Ball():
                 return self._ball(step.part, step.lipschitz, step.inside, here)
             case Blend():
@@ -135,7 +153,7 @@ class StepTracer:
                 return self._within(step, walk, here)
             case Any() | Many():
                 answers = [self._next(s, walk, here) for s in members_of(step)]
-                return np.minimum.reduce(answers) if answers else np.full(len(here.t), FAR)
+                return _least(answers) if answers else np.full(len(here.t), FAR)
             case All():
                 return self._all(step, walk, here)
             case _:
@@ -170,6 +188,19 @@ class StepTracer:
         ahead = here.t + (value - 0.5 * near) / np.where(fall > 0.0, fall, 1.0) * SHY
         return np.where(value <= near, here.t, np.where(fall > 0.0, ahead, FAR))
 
+    def _chord(self, step: Chord, walk: _Walk, here: _Place) -> Array:
+        """Out of a convex function from within: clear up to where the chord of its (concave) depth ends."""
+        _, box_end = walk.boxes[id(step)]
+        near = self.tolerance(here.rays, here.t)
+        value, slope = self._formulas.slope(step.part, here.rays.at(here.t), here.rays.d)
+        depth = 3.0 * near - value
+        tangent = np.where(slope > 1e-6, depth / np.where(slope > 1e-6, slope, 1.0), FAR)
+        reach = np.clip(tangent, 0.0, np.maximum(box_end[here.index] - here.t, 0.0))
+        value_there, _ = self._formulas.slope(step.part, here.rays.at(here.t + reach), here.rays.d)
+        depth_there = 3.0 * near - value_there
+        clear = np.where(depth_there > 0.0, reach, reach * depth / np.maximum(depth - depth_there, 1e-30))
+        return np.where(depth <= near, here.t, here.t + np.maximum(clear, 0.5 * near) * SHY)
+
     def _ball(self, part: Part, lipschitz: float, inside: bool, here: _Place) -> Array:
         near = self.tolerance(here.rays, here.t)
         radius = self._formulas.value(part, here.rays.at(here.t)) / max(lipschitz, 1e-9)
@@ -196,6 +227,8 @@ def box_of(step: Step) -> Box:
             return step.part.box.widened(MARGIN) if step.inside else everything()
         case Tangent() | Blend():
             return step.part.box.widened(MARGIN)
+        case Chord():
+            return everything()
         case Within():
             return step.box.widened(MARGIN).meet(box_of(step.step))
         case Many() | Any():
@@ -213,12 +246,15 @@ def box_of(step: Step) -> Box:
             assert_never(step)
 
 
-def _boxed(step: Step) -> list[Within]:
+def _boxes_below(step: Step) -> list[tuple[Step, Box]]:
+    """The boxes that steps ask about along a ray."""
     match step:
         case Within():
-            return [step, *_boxed(step.step)]
+            return [(step, step.box), *_boxes_below(step.step)]
+        case Chord():
+            return [(step, step.part.box)]
         case Any() | All():
-            return [within for s in step.steps for within in _boxed(s)]
+            return [pair for s in step.steps for pair in _boxes_below(s)]
         case Closed() | Many() | Tangent() | Ball() | Blend():
             return []
         case _:
@@ -239,3 +275,17 @@ def _leave(intervals: list[Interval], t: Array) -> Array:
     for interval in intervals:
         t = np.where((interval.enter <= t) & (t < interval.leave), interval.leave, t)
     return t
+
+
+def _least(arrays: list[Array]) -> Array:
+    result = arrays[0].copy()
+    for array in arrays[1:]:
+        np.minimum(result, array, out=result)
+    return result
+
+
+def _greatest(arrays: list[Array]) -> Array:
+    result = arrays[0].copy()
+    for array in arrays[1:]:
+        np.maximum(result, array, out=result)
+    return result

@@ -137,9 +137,7 @@ def expand(
     if missing:
         listed = " and ".join(f"'{m}'" for m in missing)
         raise scene_error(f"{name} needs {listed}", call.name.span)
-    if name in names.calls:
-        cycle = " → ".join([*names.calls[names.calls.index(name) :], name])
-        raise scene_error(f"'{name}' calls itself: {cycle}", call.span, "recursion is not possible: write a loop")
+    names.check_call(name, call.span)
     names.context.budget.step(call.span)
     arguments = {key: g.value for key, g in matched.items()}
     inner = Names(names.context, module, arguments, declaration.where, None, (*names.calls, name))

@@ -11,8 +11,9 @@ from sdfc.diagnostics import Diagnostic, SceneError, Span, scene_error
 from sdfc.field.graph import Expr
 from sdfc.scene import values
 from sdfc.scene.arithmetic import elements
+from sdfc.scene.bindings import did_you_mean
 from sdfc.scene.limits import LONGEST_LIST
-from sdfc.scene.names import Context, Names, Problems, did_you_mean, evaluate
+from sdfc.scene.names import Context, Names, Problems, evaluate
 from sdfc.scene.ranges import samples
 from sdfc.scene.values import Value
 from sdfc.shape.definition import Argument, Kind, Parameter

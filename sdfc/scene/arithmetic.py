@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
@@ -9,9 +10,10 @@ from typing import Any
 from sdfc.diagnostics import Span, scene_error
 from sdfc.field.graph import Expr, Type
 from sdfc.scene import functions, values
+from sdfc.scene.bindings import did_you_mean
 from sdfc.scene.color import hexadecimal
 from sdfc.scene.limits import LONGEST_LOOP
-from sdfc.scene.names import Names, Rule, did_you_mean, evaluate
+from sdfc.scene.names import Names, Rule, evaluate
 from sdfc.scene.units import UNITS, unknown_unit
 from sdfc.scene.values import ListValue, Quantity, RangeValue, Unit, Value, words
 from sdfc.syntax import tree
@@ -68,7 +70,7 @@ def rounds(value: Value, span: Span) -> tuple[Value, ...]:
     ends = [values.constant(values.number(end, span), "the end of a loop", span) for end in (value.low, value.high)]
     low, high = ends
     start, stop = low.number, high.number
-    if not stop - start <= LONGEST_LOOP:
+    if not (stop - start <= LONGEST_LOOP and math.isfinite(stop - start)):
         raise scene_error(f"a loop of {stop - start:g} rounds; {LONGEST_LOOP} are allowed", span)
     if start != round(start) or stop != round(stop):
         raise scene_error("the ends of a loop must be whole numbers", span)

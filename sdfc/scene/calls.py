@@ -11,8 +11,9 @@ from sdfc.diagnostics import Diagnostic, SceneError, Span, scene_error
 from sdfc.scene import arithmetic, combine, functions, settings, values
 from sdfc.scene.apply import apply, expand, find
 from sdfc.scene.arguments import Given, gather, match
+from sdfc.scene.bindings import did_you_mean
 from sdfc.scene.library import standard_names
-from sdfc.scene.names import Names, Problems, Rule, did_you_mean, evaluate
+from sdfc.scene.names import Names, Problems, Rule, evaluate
 from sdfc.scene.transforms import TRANSFORMS, transform
 from sdfc.scene.values import Value, is_shape, words
 from sdfc.shape.definition import Kind
@@ -76,8 +77,7 @@ def _call(node: tree.Call, names: Names) -> Value:
         return expand(declared, node, gather(node.arguments, names), names)
     definition = names.module.definition(name)
     given: list[Given] | None = None
-    if definition is None and arithmetic.is_function(name):
-        _no_block(node)
+    if definition is None and arithmetic.is_function(name) and node.block is None:  # `round` is also an operation
         given = gather(node.arguments, names)
         if not given or not is_shape(given[0].value):
             return _function(name, given, names, node)

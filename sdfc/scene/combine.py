@@ -9,8 +9,9 @@ from sdfc.scene import values
 from sdfc.scene.apply import for_children
 from sdfc.scene.arguments import Given, check, convert, gather, match
 from sdfc.scene.arithmetic import elements
+from sdfc.scene.bindings import did_you_mean
 from sdfc.scene.library import standard_names
-from sdfc.scene.names import Names, Problems, did_you_mean
+from sdfc.scene.names import Names, Problems
 from sdfc.scene.values import ListValue, Value
 from sdfc.shape.graph import Shape
 from sdfc.syntax import tree

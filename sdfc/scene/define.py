@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from sdfc.diagnostics import Diagnostic, SceneError, Span, scene_error
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.scene import functions
+from sdfc.scene.bindings import did_you_mean
 from sdfc.scene.formula import (
     NOTHING_OUTSIDE,
     Child,
@@ -16,7 +17,6 @@ from sdfc.scene.formula import (
     Scope,
     Value,
     boolean,
-    did_you_mean,
     evaluate,
     expression,
     items,

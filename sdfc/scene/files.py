@@ -6,8 +6,8 @@ import csv
 from pathlib import Path
 
 from sdfc.diagnostics import Source, Span, scene_error
+from sdfc.scene.bindings import did_you_mean
 from sdfc.scene.limits import LARGEST_FILE, MOST_ROWS
-from sdfc.scene.names import did_you_mean
 from sdfc.scene.values import Row
 
 

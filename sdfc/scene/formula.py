@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import difflib
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias, cast
@@ -10,6 +10,7 @@ from typing import Any, Protocol, TypeAlias, cast
 from sdfc.diagnostics import InternalError, Span, scene_error
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.scene import functions
+from sdfc.scene.bindings import Bindings, did_you_mean
 from sdfc.scene.units import UNITS, unknown_unit
 from sdfc.shape.definition import ChildFacts, Distance, Kind
 from sdfc.syntax import tree
@@ -72,10 +73,10 @@ class NothingOutside:
 NOTHING_OUTSIDE = NothingOutside()
 
 
-class Scope:
-    """The names of one formula: given values, then what `where` defines, evaluated when asked for, then the scene's."""
+class Scope(Bindings[Value]):
+    """The names of one formula: local ones, then constants, then what is outside."""
 
-    __slots__ = ("bindings", "calls", "graph", "open", "outer", "parent", "values")
+    __slots__ = ("graph", "outer")
 
     def __init__(
         self,
@@ -86,67 +87,39 @@ class Scope:
         parent: Scope | None = None,
         calls: tuple[str, ...] = (),
     ) -> None:
+        super().__init__(values, bindings, parent, calls)
         self.graph = graph
-        self.values: dict[str, Value] = dict(values)
-        self.bindings = {b.name.text: b for b in bindings}
-        self.open: set[str] = set()
         self.outer = outer
-        self.parent = parent
-        self.calls = calls  # the functions that are being expanded, outermost first
+
+    def compute(self, node: tree.Expression) -> Value:
+        return evaluate(node, self)
 
     def find(self, name: str, span: Span) -> Value:
         """The value of a name."""
-        scope: Scope | None = self
-        while scope is not None:
-            if name in scope.values:
-                return scope.values[name]
-            if name in scope.bindings:
-                return scope._bound(scope.bindings[name], span)
-            scope = scope.parent
+        value = self.local(name, span)
+        if value is not None:
+            return value
         if name in functions.CONSTANTS:
             return self.graph.constant(functions.CONSTANTS[name])
         if name in ("true", "false"):
             return self.graph.boolean(name == "true")
         outside = self.outer.value(name, span)
         if outside is None:
-            raise scene_error(f"unknown name '{name}' in this formula", span, did_you_mean(name, self.known()))
+            known = [*functions.CONSTANTS, *self.outer.names(), *self.local_names()]
+            raise scene_error(f"unknown name '{name}' in this formula", span, did_you_mean(name, known))
         return outside
-
-    def known(self) -> list[str]:
-        """Every name that `find` finds here."""
-        names = [*functions.CONSTANTS, *self.outer.names()]
-        scope: Scope | None = self
-        while scope is not None:
-            names += [*scope.values, *scope.bindings]
-            scope = scope.parent
-        return names
 
     def child(self, name: str) -> Child | None:
         """The child of that name."""
-        scope = self
+        scope: Bindings[Value] = self
         while scope.parent is not None:
             scope = scope.parent
         value = scope.values.get(name)
         return value if isinstance(value, Child) else None
 
-    def _bound(self, binding: tree.Binding, span: Span) -> Value:
-        name = binding.name.text
-        if name in self.open:
-            raise scene_error(f"'{name}' is defined by itself", span)
-        self.open.add(name)
-        value = self.values[name] = evaluate(binding.value, self)
-        self.open.discard(name)
-        return value
-
     def within(self, name: str, value: Value) -> Scope:
         """The same names and one more (a loop's variable)."""
         return Scope(self.graph, {name: value}, (), self.outer, self, self.calls)
-
-
-def did_you_mean(name: str, known: Sequence[str]) -> str | None:
-    """A hint with the nearest known name, if there is one near."""
-    close = difflib.get_close_matches(name, sorted(set(known)), n=1)
-    return f"did you mean '{close[0]}'?" if close else None
 
 
 def evaluate(node: tree.Expression, scope: Scope) -> Value:
@@ -253,7 +226,7 @@ def _range(node: tree.Range, scope: Scope) -> Value:
     if not (low.is_constant and high.is_constant):
         raise scene_error("the ends of a loop must be known when the scene is compiled", node.span)
     count = high.number - low.number
-    if not count <= LONGEST_LOOP:
+    if not (count <= LONGEST_LOOP and math.isfinite(count)):
         raise scene_error(f"a loop of {count:g} rounds; {LONGEST_LOOP} are allowed", node.span)
     if low.number != round(low.number) or high.number != round(high.number):
         raise scene_error("the ends of a loop must be whole numbers", node.span)
@@ -277,8 +250,8 @@ def _call(node: tree.Call, scope: Scope) -> Value:
     if name == "count" and len(values) == 1:
         return scope.graph.constant(len(items(values[0], node.span)))
     if name not in functions.FUNCTIONS and name not in functions.FOLDS:
-        hint = did_you_mean(name, [*functions.FUNCTIONS, *functions.FOLDS, "count", *scope.known()])
-        raise scene_error(f"unknown function '{name}' in this formula", node.name.span, hint)
+        known = [*functions.FUNCTIONS, *functions.FOLDS, "count", *scope.outer.names(), *scope.local_names()]
+        raise scene_error(f"unknown function '{name}' in this formula", node.name.span, did_you_mean(name, known))
     if len(values) == 1 and isinstance(values[0], tuple):
         values = list(values[0])  # max(list)
     return functions.call(name, scope.graph, _expressions(values, node.span), node.span)
@@ -288,9 +261,7 @@ def _helped(node: tree.Call, helper: Helper, scope: Scope) -> Value:
     """The body of a `def` with these arguments."""
     declaration, name = helper.declaration, node.name.text
     scope.outer.step(node.span)
-    if name in scope.calls:
-        cycle = " → ".join([*scope.calls[scope.calls.index(name) :], name])
-        raise scene_error(f"'{name}' calls itself: {cycle}", node.span, "recursion is not possible: write a loop")
+    scope.check_call(name, node.span)
     parameters = declaration.parameters or ()
     values = dict(zip([p.name.text for p in parameters], _positional(node, scope), strict=False))
     given = sum(1 for a in node.arguments if a.name is None)
@@ -361,7 +332,7 @@ def _index(value: Value, link: tree.Index, scope: Scope) -> Value:
     index = scalar(link.index, scope)
     if not index.is_constant:
         raise scene_error("an index must be known when the scene is compiled", link.span)
-    if index.number != round(index.number) or not 0 <= index.number < len(values):
+    if not 0 <= index.number < len(values) or index.number != round(index.number):
         raise scene_error(f"index {index.number:g} of a list of {len(values)}", link.span, "the first has index 0")
     return values[round(index.number)]
 

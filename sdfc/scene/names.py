@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any, Protocol, TypeAlias
 
 from sdfc.diagnostics import Diagnostic, InternalError, SceneError, Span, scene_error
 from sdfc.field.graph import FieldGraph
+from sdfc.scene.bindings import Bindings, did_you_mean
 from sdfc.scene.functions import CONSTANTS
 from sdfc.scene.library import Library
 from sdfc.scene.limits import MOST_PROBLEMS, Budget, LimitError
@@ -17,12 +18,6 @@ from sdfc.scene.values import Quantity, Value
 from sdfc.shape.definition import Definition
 from sdfc.shape.graph import ShapeGraph
 from sdfc.syntax import tree
-
-
-class Tables(Protocol):
-    """Reads the files that a scene names."""
-
-    def read(self, path: str, span: Span) -> Any: ...
 
 
 @dataclass(slots=True)
@@ -59,44 +54,33 @@ class Module(Protocol):
 
 
 Rule: TypeAlias = "Callable[[Any, Names], Value]"
+NO_VALUES: Mapping[str, Value] = MappingProxyType({})
 
 
-class Names:
-    """The names visible at one place of an expression."""
+class Names(Bindings[Value]):
+    """The names visible at one place of an expression: local ones, then the file's."""
 
-    __slots__ = ("bindings", "calls", "context", "module", "open", "parent", "values")
+    __slots__ = ("context", "module")
 
     def __init__(
         self,
         context: Context,
         module: Module,
-        values: Mapping[str, Value] | None = None,
+        values: Mapping[str, Value] = NO_VALUES,
         bindings: Sequence[tree.Binding] = (),
         parent: Names | None = None,
         calls: tuple[str, ...] = (),
     ) -> None:
+        super().__init__(values, bindings, parent, calls)
         self.context = context
         self.module = module
-        self.values: dict[str, Value] = dict(values or {})
-        self.bindings = {b.name.text: b for b in bindings}
-        self.open: set[str] = set()
-        self.parent = parent
-        self.calls = calls  # the functions that are being expanded, outermost first
+
+    def compute(self, node: tree.Expression) -> Value:
+        return evaluate(node, self)
 
     def within(self, name: str, value: Value) -> Names:
         """The same names and one more: a loop's variable, a row."""
         return Names(self.context, self.module, {name: value}, (), self, self.calls)
-
-    def local(self, name: str, span: Span) -> Value | None:
-        """The value of an argument, a loop's variable or a name after `where`."""
-        scope: Names | None = self
-        while scope is not None:
-            if name in scope.values:
-                return scope.values[name]
-            if name in scope.bindings:
-                return scope._bound(scope.bindings[name], span)
-            scope = scope.parent
-        return None
 
     def find(self, name: str, span: Span) -> Value:
         """The value of a name. Raises SceneError for one that there is not."""
@@ -118,21 +102,7 @@ class Names:
 
     def known(self) -> list[str]:
         """Every name that has a value here."""
-        names = [*self.module.names(), *CONSTANTS, "true", "false", "nothing"]
-        scope: Names | None = self
-        while scope is not None:
-            names += [*scope.values, *scope.bindings]
-            scope = scope.parent
-        return names
-
-    def _bound(self, binding: tree.Binding, span: Span) -> Value:
-        name = binding.name.text
-        if name in self.open:
-            raise scene_error(f"'{name}' is defined by itself", span)
-        self.open.add(name)
-        value = self.values[name] = evaluate(binding.value, self)
-        self.open.discard(name)
-        return value
+        return [*self.module.names(), *CONSTANTS, "true", "false", "nothing", *self.local_names()]
 
 
 def evaluate(node: tree.Expression, names: Names) -> Value:
@@ -141,12 +111,6 @@ def evaluate(node: tree.Expression, names: Names) -> Value:
     if rule is None:
         raise InternalError(f"no rule for {type(node).__name__} in a scene")
     return rule(node, names)
-
-
-def did_you_mean(name: str, known: Sequence[str]) -> str | None:
-    """A hint with the nearest known name, if there is one near."""
-    close = difflib.get_close_matches(name, sorted(set(known)), n=1)
-    return f"did you mean '{close[0]}'?" if close else None
 
 
 class Problems:

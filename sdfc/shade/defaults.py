@@ -18,7 +18,7 @@ class SkyNumbers:
 
 @dataclass(frozen=True, slots=True)
 class SunNumbers:
-    """`direction` is the way the light travels (unit); colour is linear; intensity is irradiance / colour, facing it."""
+    """`direction` is the way the light travels; its irradiance is `color` (linear) times `intensity`."""
 
     direction: Vector
     color: Vector

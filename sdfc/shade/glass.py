@@ -1,7 +1,7 @@
 """Glass: the sky in it and through it, with no ray traced on.
 
-The ray is bent as a solid ball would bend it, which turns the sky over as glass does; what leaves is never darker than the
-tint says.
+The ray is bent as a solid ball would bend it, which turns the sky over as glass does; what leaves is
+never darker than the tint says.
 """
 
 from sdfc.field.function import Function

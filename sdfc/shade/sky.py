@@ -70,7 +70,7 @@ def sky_radiance(graph: FieldGraph) -> Function:
 
 
 def sun_disc(graph: FieldGraph) -> Function:
-    """How much of the sun is seen along a ray: 1 on the disc, a faint glow around it. Multiply by the sun's radiance."""
+    """How much of the sun is seen along a ray: 1 on its disc, a faint glow around it."""
     cosine = graph.clamp(graph.dot(graph.input("direction"), graph.input("toward")), -1.0, 1.0)
     # 1 - cos is the square of the angle over 2; the disc is drawn 1 degree in radius, twice the true sun
     away = (1.0 - cosine) / 1.5e-4

@@ -1,8 +1,8 @@
 """Light that a surface sends on: the metallic-roughness model over GGX, conserving energy and reciprocal.
 
-GGX with the height-correlated Smith term (Walter 2007, Heitz 2014), Fresnel by Schlick (1994); the diffuse part gets what
-the specular part leaves, by Kelemen and Szirmay-Kalos (2001); light that bounces between the facets of a rough surface
-is given back after Kulla and Conty (2017). Their integrals are polynomials, fitted to this very model; tests integrate.
+GGX with the height-correlated Smith term (Walter 2007, Heitz 2014) and Fresnel by Schlick (1994). The diffuse part gets
+what the specular part leaves, by Kelemen and Szirmay-Kalos (2001). Light that bounces between the facets of a rough
+surface is given back, after Kulla and Conty (2017). The integrals that these need are polynomials fitted to this model.
 """
 
 import math
@@ -40,7 +40,6 @@ class Surface:
 
     diffuse: Expr  # VEC3: what of the diffuse light is not absorbed
     normal_reflectance: Expr  # VEC3: F0
-    metallic: Expr
     roughness: Expr
 
 
@@ -49,7 +48,8 @@ def surface(graph: FieldGraph) -> Surface:
     color = saturate(graph.input("color"))
     metallic = saturate(graph.input("metallic", Type.FLOAT))
     roughness = graph.clamp(graph.input("roughness", Type.FLOAT), ROUGHNESS_FLOOR, 1.0)
-    return Surface(color * (1.0 - metallic), mix(graph.constant(*[DIELECTRIC] * 3), color, metallic), metallic, roughness)
+    normal_reflectance = mix(graph.constant(*[DIELECTRIC] * 3), color, metallic)
+    return Surface(color * (1.0 - metallic), normal_reflectance, roughness)
 
 
 def lost(cosine: Expr, roughness: Expr) -> Expr:

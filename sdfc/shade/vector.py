@@ -27,7 +27,7 @@ def fifth_power(x: Expr) -> Expr:
 
 
 def power(base: Expr, exponent: Operand) -> Expr:
-    """`base` (not negative) to `exponent`. A base of zero is lifted a little, where GLSL says nothing for exponent 0."""
+    """`base` (not negative) to `exponent`; zero is lifted a little, of which GLSL's pow says nothing."""
     graph = base.graph
     return graph.call(Op.POW, graph.max(base, 1e-7), exponent)
 

@@ -5,3 +5,5 @@ float box_distance(vec3 p, vec3 half_size) {
 
 // a value that is a bound inside a box (and a margin around it) only
 float within(float box, float value, float margin) { return box > margin ? box : value; }
+
+float far_outside(vec3 p, vec3 half_size) { return any(greaterThan(abs(p), half_size)) ? FAR : -FAR; }

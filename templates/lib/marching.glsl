@@ -10,6 +10,19 @@ float tangent(float t, vec2 v, float eps) {
 // nothing is nearer than r
 float ball(float t, float r, float eps) { return r <= eps ? t : t + r * 0.9999996; }
 
+// outside a convex function, from within: how far its tangent, or the end of its box, says to look ...
+float chord_reach(float t, vec2 v, float box_end, float eps) {
+    float depth = 3.0 * eps - v.x;
+    return clamp(v.y > 1e-6 ? depth / v.y : FAR, 0.0, max(box_end - t, 0.0));
+}
+
+// ... and how far is clear: all of it where its end is still within, else up to the chord's root
+float chord(float t, float value, float reach, float value_there, float eps) {
+    float depth = 3.0 * eps - value, depth_there = 3.0 * eps - value_there;
+    float clear = depth_there > 0.0 ? reach : reach * depth / max(depth - depth_there, 1e-30);
+    return depth <= eps ? t : t + max(clear, 0.5 * eps) * 0.9999996;
+}
+
 // a part that matters only inside a box
 float inside(vec2 box, float t, float next) { return t < box.x ? box.x : next < box.y ? next : FAR; }
 

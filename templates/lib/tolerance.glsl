@@ -1,2 +1,4 @@
-// How near counts as there, at parameter t of the ray at hand: a small part of a pixel, and never below rounding.
-float tolerance(float t) { return max({{ smallest }}, {{ fine }} * (cone.x + cone.y * (travelled + t))); }
+// How near counts as there, at parameter t of the ray at hand. What converges fast is asked for all that float32 has;
+// the rest for a small part of a pixel.
+float rounding(float t) { return {{ smallest }} * max(1.0, abs(t)); }
+float tolerance(float t) { return max(rounding(t), {{ fine }} * (cone.x + cone.y * (travelled + t))); }

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -357,3 +358,21 @@ def test_no_chord_is_steeper_than_the_gradient_bound(root: Expr, seed: int) -> N
     rise = np.abs(sampled(root, a, {"k": 0.75}) - sampled(root, b, {"k": 0.75}))
     run = np.linalg.norm(a - b, axis=0)
     assert not (rise > limit * run * (1.0 + 1e-9) + 1e-9).any()
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.lists(st.floats(-1e200, 1e200), min_size=6, max_size=6))
+def test_exact_rational_results_are_enclosed(numbers: list[float]) -> None:
+    """Not only what float64 rounds to: the real number itself."""
+    graph = FieldGraph()
+    x, y, w = graph.input("x", Type.FLOAT), graph.input("y", Type.FLOAT), graph.input("w", Type.VEC2)
+    a, b, c, d = (Fraction(n) for n in numbers[:4])
+    exact = {x + y: a + b, x - y: a - b, x * y: a * b, x * x: a * a, graph.dot(w, w): c * c + d * d}
+    if b != 0:
+        exact[x / y] = a / b
+    inputs = {"x": (numbers[0],) * 2, "y": (numbers[1],) * 2, "w": (np.array(numbers[2:4])[:, None],) * 2}
+    for root, value in exact.items():
+        lo, hi = IntervalEvaluator(root).value(inputs)
+        assert (lo[0] == -np.inf or Fraction(lo[0]) <= value) and (hi[0] == np.inf or value <= Fraction(hi[0]))
+    lo, hi = IntervalEvaluator(graph.length(w)).value(inputs)
+    assert Fraction(lo[0]) ** 2 <= c * c + d * d and (hi[0] == np.inf or c * c + d * d <= Fraction(hi[0]) ** 2)

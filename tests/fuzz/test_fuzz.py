@@ -88,7 +88,7 @@ def test_random_bytes(folder: Path) -> None:
     for _ in range(BYTE_STRINGS):
         if time.monotonic() > end:
             break
-        content = random_bytes(chance)
+        content, suffix = random_bytes(chance), chance.choice(("sdf", "csg"))
         if what := answer(folder / f"fuzz.{suffix}", content):
             failures.append((content, what))
     assert not failures, report(failures)

@@ -146,7 +146,7 @@ def test_an_operation_on_solids_also_takes_shapes_in_the_plane_where_its_formula
 
 
 def test_functions_make_shapes_and_are_chained() -> None:
-    made = scene("def ring(n, r = 1) = union(for i in 0..n: sphere(0.1).translate([r, 0, 0]).rotate(y: i * 360deg / n))\n"
+    made = scene("def ring(n, r = 1) = union(for i in 0..n: sphere(0.1).translate(x: r).rotate(y: i * 360deg / n))\n"
                  "def lifted(shape, h) = shape.translate(y: h)\nscene { ring(5).lifted(2) }")  # fmt: skip
     assert len(the(Union, the(Affine, made.root).child).children) == 5
     assert not made.warnings
@@ -161,7 +161,7 @@ def test_a_scene_is_the_union_of_what_it_lists() -> None:
 
 def test_materials() -> None:
     made = scene("material gold { color: #ffcf5c, metallic: 1 roughness: 0.15 }\n"
-                 "scene { sphere(1).material(gold) box().material(gold) torus().material(color: [1, 0, 0]) }")  # fmt: skip
+                 "scene { sphere(1).material(gold) box().material(gold) torus().material(color: #f00) }")  # fmt: skip
     first, second, third = (the(Paint, c).material for c in the(Union, made.root).children)
     assert first is second and first.name == "gold"
     assert first.metallic.number == 1.0 and first.roughness.number == 0.15 and first.ior.number == 1.5
@@ -170,7 +170,7 @@ def test_materials() -> None:
 
 def test_camera_lights_and_sky() -> None:
     made = scene("camera { eye: [1, 2, 3], target: [0, 1, 0], fov: 30deg }\nlight sun { direction: [0, -1, 0] }\n"
-                 "light { position: [1, 1, 1] color: #f00 intensity: 5 }\nsky { horizon: #fff }\nscene { box() }")  # fmt: skip
+                 "light { position: [1, 1, 1] color: #f00 intensity: 5 }\nsky { horizon: #fff } scene { }")  # fmt: skip
     camera = made.camera
     assert camera is not None and camera.height is None
     assert (camera.eye.numbers, camera.target.numbers, camera.up.numbers) == ((1, 2, 3), (0, 1, 0), (0, 1, 0))

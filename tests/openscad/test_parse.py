@@ -95,7 +95,7 @@ def test_no_text_at_all() -> None:
         ("cube([1e]);", "m.csg:1:6", "this is no number"),
         ("cube(1e300);", "m.csg:1:6", "numbers go to"),
         ("cube(@);", "m.csg:1:6", "'@' is not expected here"),
-        ("x = 3;", "m.csg:1:1", "is not expected here"),
+        ("x = 3;", "m.csg:1:3", "no variables"),
     ],
 )
 def test_errors_have_a_place(text: str, place: str, says: str) -> None:

@@ -25,7 +25,8 @@ Array = NDArray[np.float64]
 
 def _definitions() -> dict[str, Definition]:
     """Every standard field, and of every operation on solids its twin in the plane, where it makes sense there."""
-    library = Library(FieldGraph())
+    graph = FieldGraph()
+    library = Library(graph)
     found = {}
     for name in standard_names():
         definition = library.definition(name)
@@ -33,7 +34,11 @@ def _definitions() -> dict[str, Definition]:
         found[name] = definition
         if definition.dimension == 3 and any(p.kind is Kind.SOLID for p in definition.children):
             with suppress(SceneError):  # its formula makes sense in space only
-                found[name + IN_PLANE] = library.definition(name + IN_PLANE) or definition
+                twin = library.definition(name + IN_PLANE)
+                assert twin is not None
+                numbers = {p.name: p.default({}) for p in twin.values if p.default}
+                twin.formula(graph.input("p", Type.VEC2), numbers, {p.name: graph.length for p in twin.children})
+                found[name + IN_PLANE] = twin
     return found
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from standard_entries import Array, Subject, names_where, subjects
+from standard_entries import Array, Subject, default_subject, names_where, subjects
 from test_claims import checked
 
 from sdfc.field.graph import Type
@@ -90,3 +90,19 @@ def _noise(subject: Subject, points: Array, slack: float) -> Array:
     ahead = [subject.value(points + slack * np.eye(3)[:, [axis]], subject.gauge) for axis in range(3)]
     here = subject.value(points, subject.gauge)
     return np.sum([np.abs(a - here) for a in ahead], axis=0)
+
+
+@pytest.mark.parametrize("name", _WITH_RAYS)
+def test_ray_from_afar_in_float32(name: str) -> None:
+    """From a thousand times its size away, the entry is off by a few roundings of that distance, and no hit is lost."""
+    subject = default_subject(name)
+    generator = np.random.default_rng(3)
+    far = 1000.0 * subject.scale
+    d = generator.normal(size=(3, 2000))
+    d = (d / np.linalg.norm(d, axis=0)).astype(np.float32).astype(float)
+    o = (subject.points(generator, 2000, 0.8) - d * far).astype(np.float32).astype(float)
+    exact = _intervals(subject, o, d, 0.0, np.float64)[0]
+    found = _intervals(subject, o, d, 0.0, np.float32)[0]
+    hit = (exact[1] - exact[0] > 0.05 * subject.scale) & (np.abs(exact[0]) < 2.0 * far)
+    assert (found[0] < found[1])[hit].all()
+    assert np.quantile(np.abs(found[0] - exact[0])[hit], 0.99) <= 16 * np.spacing(np.float32(far))
