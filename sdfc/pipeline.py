@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from sdfc.diagnostics import InternalError, SceneError, Source
+from sdfc.diagnostics import InternalError, SceneError, Source, scene_error
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.ranges import Ranges
@@ -29,6 +29,7 @@ from sdfc.shape.graph import Shape
 from sdfc.tracers import TRACERS
 
 Kind = Literal["sdf", "csg"]
+MOST_PARAMS = 16  # live uniforms: more of them slow every frame on llvmpipe (GL.md 0)
 _DEPTH = 400_000  # Python frames: chains of thousands of operations; pure Python calls need no C stack
 
 
@@ -64,7 +65,11 @@ def load(source: Source, folder: Path | None = None, kind: Kind = "sdf") -> Scen
             return load_csg(source)
         from sdfc.scene.elaborate import elaborate
 
-        return elaborate(source, folder)
+        scene = elaborate(source, folder)
+    for param in scene.params[MOST_PARAMS:]:
+        message = f"a scene has at most {MOST_PARAMS} params: '{param.name}' is one too many"
+        raise scene_error(message, param.span, "make one a constant with `def`")
+    return scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,7 +191,7 @@ def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:  # no
             plan = Plan(
                 steps,
                 TRACERS[options.tracer],
-                tuple(dict.fromkeys(p.material for p in prover.parts)) or (setting.unpainted,),
+                tuple(dict.fromkeys(m for p in prover.parts for m in p.looks)) or (setting.unpainted,),
                 prover.slopes(needed=TRACERS[options.tracer].needs_map),
                 frame.radius,
                 frame.centre,

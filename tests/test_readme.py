@@ -40,7 +40,9 @@ def folder(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("command", commands())
 def test_commands(command: str, folder: Path) -> None:
     program = [sys.executable, "-m", "sdfc"]
-    done = subprocess.run([*program, *shlex.split(command)[1:]], cwd=folder, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(
+        [*program, *shlex.split(command)[1:]], cwd=folder, capture_output=True, text=True, timeout=120
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     for made in re.findall(r"-o (\S+)", command):
         assert (folder / made).stat().st_size > 0

@@ -25,6 +25,7 @@ from sdfc.plan.setting import Setting
 from sdfc.scene.model import Param
 from sdfc.shade.ambient import OCCLUSION_HEIGHTS
 from sdfc.shade.functions import FUNCTIONS
+from sdfc.shape.look import Looks
 from sdfc.shape.lower import Lowering
 
 
@@ -70,7 +71,9 @@ class _Assembly:
         self._setting = setting
         self._entry = entry
         self._live = Live()
-        self._functions = Functions(graph, Lowering(), (p.name for p in setting.params))
+        lowering = Lowering()
+        looks = Looks(lowering, plan.materials, setting.unpainted)
+        self._functions = Functions(graph, lowering, looks, (p.name for p in setting.params))
         self._lit = entry != "probe"
 
     def text(self, stage: str) -> str:

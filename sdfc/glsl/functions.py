@@ -14,6 +14,7 @@ from sdfc.glsl.names import Names, identifier
 from sdfc.plan.steps import Part
 from sdfc.shape.definition import Argument, Definition, Kind
 from sdfc.shape.graph import Apply
+from sdfc.shape.look import Looks
 from sdfc.shape.lower import Lowering
 
 _TYPES = {
@@ -36,6 +37,7 @@ class Role(Enum):
     DISTANCE_SLOPE = "_distance_slope"  # vec2: the formula and its derivative along d
     SURFACE = "_surface"  # vec4: gradient and value of a function with the surface as its zero set
     DISTANCE_SURFACE = "_distance_surface"  # vec4: gradient and value of the formula
+    LOOK = "_look"  # float: the index of the material of an operation with several
     JOINED = "_of"  # float: a blend of two values
     WEIGHTS = "_weights"  # vec3: a blend's derivatives by its two operands, and its value
 
@@ -51,9 +53,10 @@ class Call:
 class Functions:
     """Collects functions as calls are asked for; equal ones are one."""
 
-    def __init__(self, graph: FieldGraph, lowering: Lowering, taken: Iterable[str] = ()) -> None:
+    def __init__(self, graph: FieldGraph, lowering: Lowering, looks: Looks, taken: Iterable[str] = ()) -> None:
         self._graph = graph
         self._lowering = lowering
+        self._looks = looks
         self._by_key: dict[tuple[object, ...], Function] = {}
         self.names = Names(identifier(n) for n in taken)
 
@@ -132,6 +135,8 @@ class Functions:
                 grow = graph.input("grow", Type.FLOAT)
                 result = intervals(shape, o, d, grow)
                 return Function(name, (*ray, ("grow", Type.FLOAT), *formal), result, doc)
+            case Role.LOOK:
+                return Function(name, (point, *formal), self._looks.index(shape, p), "which material is seen")
             case Role.SLOPE | Role.DISTANCE_SLOPE:
                 distance = role is Role.DISTANCE_SLOPE
                 value = self._lowering.value(shape, p) if distance else self.convex_function(shape, p)

@@ -169,6 +169,10 @@ class SurfaceWriter:
             field = body.text(self._turned(part, name))
         elif not (part.stretch.is_constant and part.stretch.number == 1.0):
             field = f"{body.text(part.stretch)} * {field}"
+        if len(part.looks) > 1:
+            self._painted = True
+            look = body.call(self._functions.of_part(part, Role.LOOK), [q])
+            return f"painted({'' if inside else '-'}{field}, {look})"
         return f"{self._names[id(part.material)]}({'' if inside else '-'}{field})"
 
     def _turned(self, part: Part, name: str) -> Expr:

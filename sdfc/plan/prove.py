@@ -210,8 +210,22 @@ class Prover:
             stretch = smallest_stretch(leaf.affine.forward)
             own_grow = largest_stretch(inverse)
         box = self._bounds.box(leaf.placed)
-        material = leaf.material or _first_material(leaf.shape) or self._unpainted
-        return Part(name, leaf.shape, inverse, stretch, own_grow, material, box, leaf.shape.span)
+        looks = (leaf.material,) if leaf.material is not None else self._materials_below(leaf.shape)
+        return Part(name, leaf.shape, inverse, stretch, own_grow, looks[0], looks, box, leaf.shape.span)
+
+    def _materials_below(self, shape: Shape) -> tuple[Material, ...]:
+        """Every material of an operation's parts; the unpainted one where there is an unpainted part, or no part."""
+        found: dict[Material, None] = {}
+        painted: set[int] = set()
+        for node in topological(shape):
+            match node:
+                case Paint():
+                    found[node.material] = None
+                    painted.add(node.child.id)
+                case _:
+                    pass
+        bare = any(_is_bare(node, painted) for node in topological(shape))
+        return tuple(found) + ((self._unpainted,) if bare or not found else ())
 
     def _intervals(self, shape: Apply) -> int:
         """How many intervals the primitive's ray claim gives: the same for all uses of the definition."""
@@ -225,15 +239,12 @@ class Prover:
         return len(lower_ray(shape, o, d, self._values.constant(0.0)))
 
 
-def _first_material(shape: Shape) -> Material | None:
-    """The material of the first painted part of an operation."""
-    for node in topological(shape):
-        match node:
-            case Paint():
-                return node.material
-            case _:
-                pass
-    return None
+def _is_bare(shape: Shape, painted: set[int]) -> bool:
+    match shape:
+        case Apply():
+            return shape.definition.is_primitive and shape.dimension == 3 and shape.id not in painted
+        case _:
+            return False
 
 
 def _any(steps: list[Step]) -> Step:

@@ -32,6 +32,7 @@ class Part:
     stretch: Expr
     own_grow: Expr
     material: Material
+    looks: tuple[Material, ...]  # all that are below; more than one only in an operation
     box: Box
     span: Span
 

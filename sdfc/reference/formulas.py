@@ -69,10 +69,10 @@ class _Own:
     grow: float
 
     def point(self, p: Array) -> Array:
-        return p if self.linear is None else self.linear @ p + self.offset
+        return p if self.linear is None else _product(self.linear, p) + self.offset
 
     def direction(self, d: Array) -> Array:
-        return d if self.linear is None else self.linear @ d
+        return d if self.linear is None else _product(self.linear, d)
 
 
 class Formulas:
@@ -133,7 +133,7 @@ class Formulas:
         normal, value = self._evaluate(f"surface {formula}", own.owner, roots, inputs, own.arguments)
         normal = np.broadcast_to(normal, p.shape)
         if own.linear is not None:
-            normal = own.linear.T @ normal
+            normal = _product(own.linear.T, normal)
         return np.concatenate([normal, np.broadcast_to(value, (1, p.shape[1]))]) * own.stretch
 
     def weights(self, blend: Apply, a: Array, b: Array) -> tuple[Array, Array, Array]:
@@ -210,6 +210,12 @@ class Formulas:
         if key not in self._evaluators:
             self._evaluators[key] = Evaluator(roots())
         return self._evaluators[key](inputs, {**self._params, **(arguments or {})})
+
+
+def _product(matrix: Array, v: Array) -> Array:
+    """matrix v, without BLAS: its threads cost more than so small a product, where others use the machine too."""
+    rows = [matrix[i, 0] * v[0] + matrix[i, 1] * v[1] + matrix[i, 2] * v[2] for i in range(3)]
+    return np.stack(rows)
 
 
 def _always(value: Expr) -> Callable[[Expr], Expr]:

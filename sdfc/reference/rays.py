@@ -53,10 +53,10 @@ def box_interval(rays: Rays, box: Box) -> tuple[Array, Array]:
     return enter, leave
 
 
-def box_distance(p: Array, box: Box) -> Array:
-    """The signed distance (n,) of points (3, n) from a box."""
-    low, high = (np.array(v)[:, None] for v in (box.lo, box.hi))
-    q = np.maximum(low - p, p - high)
-    outside: Array = np.sqrt(np.sum(np.maximum(q, 0.0) ** 2, axis=0))
-    inside: Array = np.minimum(np.max(q, axis=0), 0.0)
-    return outside + inside
+def box_gap(p: Array, box: Box) -> Array:
+    """How far (n,) points (3, n) are outside a box, along the axis where they are furthest; negative inside."""
+    gap = np.full(p.shape[1], -np.inf)
+    for axis, (low, high) in enumerate(zip(box.lo, box.hi, strict=True)):
+        np.maximum(gap, low - p[axis], out=gap)
+        np.maximum(gap, p[axis] - high, out=gap)
+    return gap

@@ -19,7 +19,7 @@ from sdfc.reference.formulas import Formulas
 from sdfc.reference.light import Hits, Shader
 from sdfc.reference.rays import Rays
 from sdfc.reference.surface import Surface, SurfaceFold
-from sdfc.reference.trace import FAR, StepTracer
+from sdfc.reference.trace import FAR, StepTracer, members_of
 from sdfc.scene.model import Scene
 
 Array = NDArray[np.float64]
@@ -155,7 +155,8 @@ def _bundles(
 ) -> Iterator[tuple[slice, Rays]]:
     """Rays of the picture, a bundle at a time, with their places in it."""
     pixels = size[0] * size[1]
-    count = max(1024, min(MOST_RAYS, INTERVALS_AT_ONCE // max(1, len(leaves_of(plan.root)))))
+    largest = max((len(leaves_of(member)) for member in members_of(plan.root)), default=1)  # solved one at a time
+    count = max(1024, min(MOST_RAYS, INTERVALS_AT_ONCE // max(1, largest)))
     for begin in range(0, pixels, count):
         end = min(begin + count, pixels)
         yield slice(begin, end), _camera_rays(uniforms, np.arange(begin, end), size)

@@ -29,7 +29,7 @@ from sdfc.plan.steps import (
     is_closed,
 )
 from sdfc.reference.formulas import Formulas
-from sdfc.reference.rays import box_distance
+from sdfc.reference.rays import box_gap
 from sdfc.reference.trace import FAR, box_of, members_of
 
 Array = NDArray[np.float64]
@@ -102,7 +102,7 @@ class SurfaceFold:
         """Only the members whose boxes are near are asked: a scene may have thousands."""
         result = self._empty(p.shape[1])
         for member in members:
-            near = np.flatnonzero(box_distance(p, self._box(member)) < _NEAR)
+            near = np.flatnonzero(box_gap(p, self._box(member)) < _NEAR)
             if near.size:
                 found = self._fold(member, p[:, near])
                 nearer = np.flatnonzero(found.field[3] < result.field[3, near])
@@ -157,7 +157,7 @@ class SurfaceFold:
                 if not step.is_needed:
                     return inner
                 # outside, the value means nothing; the box's distance, though a bound, would shade like a box
-                return np.where(box_distance(p, step.box) > 0.0, FAR, inner)
+                return np.where(box_gap(p, step.box) > 0.0, FAR, inner)
             case Any() | Many():
                 result = np.full(p.shape[1], FAR)
                 for member in members_of(step):
@@ -177,7 +177,7 @@ class SurfaceFold:
         """The points that `member` may be near to. Only primitives measure distances no worse than their boxes do."""
         if not is_closed(member):
             return np.arange(p.shape[1])
-        return np.flatnonzero(box_distance(p, self._box(member)) < reach)
+        return np.flatnonzero(box_gap(p, self._box(member)) < reach)
 
     def _value(self, part: Part, p: Array, inside: bool) -> Array:
         slope = self._plan.slopes[id(part)]

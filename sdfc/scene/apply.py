@@ -58,7 +58,7 @@ def apply(
     values_ = _values(definition, matched, names, call.name.span)
     names.context.budget.shape(span)
     made = names.context.shapes.apply(definition, values_, parts, span)
-    _try(definition, values_, names)
+    _try(definition, values_, names, span)
     return made
 
 
@@ -112,14 +112,21 @@ def _check_requirements(definition: Definition, environment: dict[str, Argument]
     problems.finish()
 
 
-def _try(definition: Definition, arguments: Sequence[Argument], names: Names) -> None:
+def _try(definition: Definition, arguments: Sequence[Argument], names: Names, place: Span) -> None:
     """Tries a formula with loops once for each length of a list and each count: a wrong index is told now."""
     pairs = zip(definition.values, arguments, strict=True)
     sizes = {p.name: a for p, a in pairs if p.kind.is_list or p.kind is Kind.COUNT}
     key = (definition, *[len(a) if isinstance(a, tuple) else a for a in sizes.values()])
     if sizes and key not in names.context.tried:
         names.context.tried.add(key)
-        try_out(definition, names.context.graph, sizes)
+        try:
+            try_out(definition, names.context.graph, sizes)
+        except SceneError as error:
+            if not definition.is_standard:
+                raise
+            first = error.diagnostics[0]
+            message = f"{definition.name.removesuffix(IN_PLANE)} cannot be made of these: {first.message}"
+            raise scene_error(message, place) from None
 
 
 def expand(

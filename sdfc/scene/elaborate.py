@@ -32,10 +32,18 @@ def elaborate(source: Source, folder: Path | None) -> Scene:
     with _deep():
         try:
             return _elaborate(source, folder)
+        except SceneError as error:
+            raise SceneError(*sorted(error.diagnostics, key=lambda d: _order(d, source))) from None
         except RecursionError:
             raise scene_error(
                 f"{source.name} is nested too deeply: brackets, blocks or calls within each other"
             ) from None
+
+
+def _order(diagnostic: Diagnostic, source: Source) -> tuple[bool, str, int]:
+    """Other files first, since what is wrong there may be the cause; then by place."""
+    span = diagnostic.span
+    return (True, "", -1) if span is None else (span.source is source, span.source.name, span.start)
 
 
 @contextmanager

@@ -79,7 +79,9 @@ def report(failures: list[tuple[bytes, str]]) -> str:
     kinds: dict[str, list[bytes]] = {}
     for content, what in failures:
         kinds.setdefault(re.sub(r"/\S+|\d+", "", what), []).append(content)
-    shown = [f"{len(found)} times, as with {min(found, key=len)[:3000]!r}\n  -> {kind}" for kind, found in kinds.items()]
+    shown = [
+        f"{len(found)} times, as with {min(found, key=len)[:3000]!r}\n  -> {kind}" for kind, found in kinds.items()
+    ]
     return f"{len(failures)} failed\n" + "\n\n".join(shown[:12])
 
 
