@@ -101,7 +101,11 @@ PASSES = (
     Pass("paint", "while `a - b` still tells which part is cut", lambda s, w: paint(s, w.scene.shapes)),
     Pass("own_origin", "before transforms are composed: one more to compose", lambda s, w: w.framed(s)),
     Pass("place", "leaves must be placed to be bounded", lambda s, w: place(s, w.scene.shapes, w.scene.values)),
-    Pass("negate", "step rules know leaves and their complements", lambda s, w: negate(s, w.scene.shapes, w.library.definition)),
+    Pass(
+        "negate",
+        "step rules know leaves and their complements",
+        lambda s, w: negate(s, w.scene.shapes, w.library.definition),
+    ),
     Pass("prune", "boxes are known now", lambda s, w: prune(s, w.scene.shapes, w.bounds)),
     Pass("flatten again", "De Morgan and pruning made new nests", lambda s, w: flatten(s, w.scene.shapes)),
 )
@@ -177,7 +181,7 @@ class Compiled:
         return explain(self.scene, self.plan, self.frame)
 
 
-def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:  # noqa: B008 (frozen)
+def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:
     """Prove what can be proved, choose, and be ready to print. Raises SceneError where nothing can be proved."""
     root, workshop = normalise(scene)
     frame = workshop.frame

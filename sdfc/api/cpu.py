@@ -25,5 +25,9 @@ class CpuRenderer:
 
         return probe(shot.compiled, shot.view, shot.params, shot.size, progress)
 
+    def depth(self, shot: Shot, progress: Progress | None) -> Buffer:
+        """See Renderer."""
+        return self.probe(shot, progress)[0]
+
     def close(self) -> None:
         """Holds nothing."""

@@ -166,7 +166,10 @@ def _aovs(renderer: Renderer, shot: Shot, wanted: tuple[str, ...], progress: Pro
     """The images beside the colour that are wanted, in the forms that Image documents."""
     import numpy as np
 
-    first, normal, position, _ = renderer.probe(shot, progress)
+    if set(wanted) <= {"depth", "steps"}:
+        first = normal = position = renderer.depth(shot, progress)
+    else:
+        first, normal, position, _ = renderer.probe(shot, progress)
     hit = first[..., 3] > 0.5
     made: dict[str, Callable[[], Array]] = {
         "depth": lambda: np.where(hit, first[..., 0], np.inf).astype(np.float32),

@@ -43,6 +43,9 @@ class Renderer(Protocol):
     def probe(self, shot: Shot, progress: Progress | None) -> list[Buffer]:
         """At the pixels' centres: (depth, steps, material, hit), (normal, 0), (position, 0), (ray direction, 0)."""
 
+    def depth(self, shot: Shot, progress: Progress | None) -> Buffer:
+        """The first image of `probe` alone, without material: nothing is computed that a depth image does not need."""
+
     def close(self) -> None:
         """Give back what it holds."""
 
@@ -68,6 +71,10 @@ class GlRenderer:
     def probe(self, shot: Shot, progress: Progress | None) -> list[Buffer]:
         """See Renderer."""
         return self._draw(shot, "probe", 4, 0, progress)
+
+    def depth(self, shot: Shot, progress: Progress | None) -> Buffer:
+        """See Renderer."""
+        return self._draw(shot, "depth", 1, 0, progress)[0]
 
     def _draw(self, shot: Shot, entry: str, attachments: int, sample: int, progress: Progress | None) -> list[Buffer]:
         from sdfc.gpu.frame import Frame

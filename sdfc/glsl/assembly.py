@@ -19,9 +19,9 @@ from sdfc.glsl.many import ManyWriter
 from sdfc.glsl.names import identifier
 from sdfc.glsl.proven import ProvenWriter, TraceText
 from sdfc.glsl.surface import SurfaceWriter
-from sdfc.plan.plan import CUT, GROW, HORIZON, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, Plan
-from sdfc.plan.steps import Blend, leaves_of
+from sdfc.plan.plan import CUT, FINE, GROW, HORIZON, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, Plan
 from sdfc.plan.setting import Setting
+from sdfc.plan.steps import Blend, leaves_of
 from sdfc.scene.model import Param
 from sdfc.shade.ambient import OCCLUSION_HEIGHTS
 from sdfc.shade.functions import FUNCTIONS
@@ -55,7 +55,7 @@ def _environment() -> Environment:
 
 
 def assemble(graph: FieldGraph, plan: Plan, setting: Setting, entry: str, stage: str) -> str:
-    """One complete shader. `entry` is picture, radiance or probe; `stage` is fragment or compute (picture only)."""
+    """One complete shader. `entry` is picture, radiance, probe or depth; `stage` is fragment or compute (picture only)."""
     return _Assembly(graph, plan, setting, entry).text(stage)
 
 
@@ -74,7 +74,8 @@ class _Assembly:
         lowering = Lowering()
         looks = Looks(lowering, plan.materials, setting.unpainted)
         self._functions = Functions(graph, lowering, looks, (p.name for p in setting.params))
-        self._lit = entry != "probe"
+        self._lit = entry in ("picture", "radiance")
+        self._has_surface = entry != "depth"
 
     def text(self, stage: str) -> str:
         suffix = {"fragment": "frag", "compute": "comp"}[stage]
@@ -93,7 +94,7 @@ class _Assembly:
         map_text = distance.write(plan.root) if has_map else ""
         recorded = many if tracer.needs_steps else None
         surfaces = SurfaceWriter(self._graph, self._functions, self._live, plan.materials, recorded)
-        surface = surfaces.write(plan.root)
+        surface = surfaces.write(plan.root) if self._has_surface else None
         context: dict[str, object] = {
             "version": VERSION,
             "header": self._header(),
@@ -103,7 +104,7 @@ class _Assembly:
             "grow": literal(GROW),
             "cut": literal(CUT),
             "smallest": literal(SMALLEST_TOLERANCE),
-            "fine": literal(tracer.tolerance),
+            "fine": literal(FINE),
             "finite": plan.is_finite,
             "horizon": literal(HORIZON),
             "lift": literal(LIFT),
@@ -116,7 +117,7 @@ class _Assembly:
             "tracer_template": tracer.template,
             "surface": surface,
         }
-        if self._lit:
+        if self._lit and surface is not None:
             context |= self._lighting(surface.properties)
         context["functions"] = "\n".join(print_function(f) for f in self._functions.all)
         context["live"] = [Variable(type_name(e.type), n) for n, e in self._live.values]
@@ -201,4 +202,3 @@ def _vector(numbers: Sequence[float]) -> str:
 
 def _numbers(values: Sequence[float]) -> str:
     return " ".join(f"{v:g}" for v in values)
-

@@ -13,7 +13,7 @@ from sdfc.plan.steps import Blend, BlendNode, BlendTree, BlendUnion, Part, Tange
 
 
 class BlendWriter:
-    """Writes one function a blend: its value where each leaf is replaced by its tangent, `tau` further along the ray."""
+    """Writes a function for each blend: its value where each leaf is replaced by its tangent, `tau` further on."""
 
     def __init__(self, graph: FieldGraph, functions: Functions, live: Live) -> None:
         self._graph = graph
@@ -35,7 +35,9 @@ class BlendWriter:
         parts = self.parts_of(blend)
         self._function(blend, parts)
         for part in parts:
-            body.add(f"vec2 v_{part.name} = {self.slope(body, part, directions[id(part)], Role.DISTANCE_SLOPE)};", part.span)
+            body.add(
+                f"vec2 v_{part.name} = {self.slope(body, part, directions[id(part)], Role.DISTANCE_SLOPE)};", part.span
+            )
         arguments = ", ".join(f"v_{part.name}" for part in parts)
         body.add(f"float v_{name} = {name}_ahead(0.0, {arguments});", blend.part.span)
         body.add(f"float left_{name} = {name}_clear(v_{name}, fine, {arguments});")

@@ -12,7 +12,24 @@ from sdfc.glsl.names import Names
 from sdfc.shape.matrix import Matrix
 
 # what templates and generated statements use: no local of an expression may take these
-_TAKEN = ("o", "d", "p", "q", "t", "next", "near", "far", "eps", "fine", "first", "start", "limit", "count", "steps", "field")
+_TAKEN = (
+    "o",
+    "d",
+    "p",
+    "q",
+    "t",
+    "next",
+    "near",
+    "far",
+    "eps",
+    "fine",
+    "first",
+    "start",
+    "limit",
+    "count",
+    "steps",
+    "field",
+)
 
 
 def place(span: Span) -> str:

@@ -23,7 +23,13 @@ class DistanceWriter:
     """
 
     def __init__(
-        self, graph: FieldGraph, functions: Functions, live: Live, slopes: dict[int, float], many: ManyWriter, traced: bool
+        self,
+        graph: FieldGraph,
+        functions: Functions,
+        live: Live,
+        slopes: dict[int, float],
+        many: ManyWriter,
+        traced: bool,
     ) -> None:
         self._graph = graph
         self._functions = functions

@@ -12,7 +12,7 @@ from sdfc.field.function import Function
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.glsl.names import Names, identifier
 from sdfc.plan.steps import Part
-from sdfc.shape.definition import Argument, Definition, Kind
+from sdfc.shape.definition import Argument, Kind
 from sdfc.shape.graph import Apply
 from sdfc.shape.look import Looks
 from sdfc.shape.lower import Lowering

@@ -133,12 +133,24 @@ class ManyWriter:
         stems = (("meet_", ""), ("", "_at"), ("", "_look"), ("", "_table"), ("", "_boxes"))
         names = [fresh(f"{stem}{many.name}{tail}") for stem, tail in stems]
         groups = clustered(many.members)
-        record = Record(names[0], names[1], values, names[2], names[3], names[4], len(groups), math.ceil(floats / 4), rows_at_once(len(many.members)))
+        record = Record(
+            names[0],
+            names[1],
+            values,
+            names[2],
+            names[3],
+            names[4],
+            len(groups),
+            math.ceil(floats / 4),
+            rows_at_once(len(many.members)),
+        )
         self.tables += [self._table(groups, record), _boxes(groups, record)]
         return record
 
     def _table(self, groups: list[list[Closed]], record: Record) -> str:
-        lines = [f"// place, size{', material' * (len(self._materials) > 1)}: {CLUSTER} rows a cluster, the last one padded"]
+        lines = [
+            f"// place, size{', material' * (len(self._materials) > 1)}: {CLUSTER} rows a cluster, the last one padded"
+        ]
         lines.append(f"const vec4 {record.table}[{CLUSTER * len(groups) * record.width}] = vec4[](")
         members = [m for group in groups for m in [*group, *[group[-1]] * (CLUSTER - len(group))]]
         for index, member in enumerate(members):

@@ -29,7 +29,6 @@ from sdfc.plan.steps import (
     leaves_of,
 )
 
-
 Names: TypeAlias = dict[tuple[int, bool], str]
 
 
@@ -63,7 +62,9 @@ class ProvenWriter:
             self._events(closed)
         if marched:
             self._march(marched[0] if len(marched) == 1 else Any(tuple(marched)))
-        return TraceText("\n".join([*self._many.meetings, *self._blends.texts, *self._texts]), bool(closed), bool(marched))
+        return TraceText(
+            "\n".join([*self._many.meetings, *self._blends.texts, *self._texts]), bool(closed), bool(marched)
+        )
 
     # events: hard CSG of closed-form intervals
 
@@ -80,7 +81,9 @@ class ProvenWriter:
                 case _:
                     body.add(f"first = min(first, {self._solid(component)}(o, d, start));")
         body.add("return first;")
-        self._function("float events(vec3 o, vec3 d, float start)", body, "the first hit of what is solved in closed form")
+        self._function(
+            "float events(vec3 o, vec3 d, float start)", body, "the first hit of what is solved in closed form"
+        )
 
     def _solid(self, component: Step) -> str:
         self._count += 1
@@ -141,7 +144,9 @@ class ProvenWriter:
         body.add("} while (next > t && next < limit && count < MOST_STEPS);")
         body.add("return next > t && next >= limit ? FAR : t;")
         self._function(
-            "float march(vec3 o, vec3 d, float start, float limit)", body, "the first hit of what is marched, before `limit`"
+            "float march(vec3 o, vec3 d, float start, float limit)",
+            body,
+            "the first hit of what is marched, before `limit`",
         )
 
     def _boxes(self, body: Body, step: Step) -> None:
@@ -205,9 +210,7 @@ class ProvenWriter:
 
     # the tree
 
-    def _next(
-        self, step: Step, body: Body, names: Names, directions: dict[int, Expr] | None = None
-    ) -> str:
+    def _next(self, step: Step, body: Body, names: Names, directions: dict[int, Expr] | None = None) -> str:
         match step:
             case Closed():
                 return f"{'enter' if step.inside else 'leave'}({names[id(step.part), step.inside]}, t)"
@@ -282,7 +285,9 @@ class ProvenWriter:
 
     def _ball(self, step: Ball, body: Body) -> str:
         part = step.part
-        value = body.call(self._functions.of_part(part, Role.VALUE), [body.point(own_point(part.inverse, self._p), f"q_{part.name}")])
+        value = body.call(
+            self._functions.of_part(part, Role.VALUE), [body.point(own_point(part.inverse, self._p), f"q_{part.name}")]
+        )
         scale = part.stretch * (1.0 / max(step.lipschitz, 1e-9))
         factor = "" if scale.is_constant and scale.number == 1.0 else f"{body.text(scale)} * "
         if step.inside:

@@ -13,7 +13,22 @@ from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
 from sdfc.plan.gather import is_translation
-from sdfc.plan.steps import All, Any, Ball, Blend, BlendNode, BlendTree, BlendUnion, Chord, Closed, Many, Part, Step, Tangent, Within
+from sdfc.plan.steps import (
+    All,
+    Any,
+    Ball,
+    Blend,
+    BlendNode,
+    BlendTree,
+    BlendUnion,
+    Chord,
+    Closed,
+    Many,
+    Part,
+    Step,
+    Tangent,
+    Within,
+)
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
 

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from sdfc.plan.steps import Closed
 
-
 CLUSTER = 16  # rows
 
 

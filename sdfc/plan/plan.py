@@ -13,6 +13,7 @@ from sdfc.tracers.record import Tracer
 GROW = 2.0**-22
 CUT = 2.0**-20
 SMALLEST_TOLERANCE = 2.0**-19  # sixteen roundings of numbers up to one
+FINE = 1.0 / 64.0  # of half a pixel: what every tracer is asked for, so that times compare at equal error
 LIFT = 2.0**-17  # how far shadow rays start above the surface: clear of CUT and of rounding
 HORIZON = 1e5  # how far rays are marched in a scene without end
 MOST_LOOPS = 60000  # llvmpipe stops all loops of an invocation together at 65 535 (GL.md 0)

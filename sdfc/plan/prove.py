@@ -99,7 +99,7 @@ class Prover:
         return tuple(self._parts.values())
 
     def slopes(self, needed: bool) -> dict[int, float]:
-        """The Lipschitz constant of each part's formula, by the part's id; infinite where none is known, unless `needed`."""
+        """The Lipschitz constant of each part's formula, by its id; infinite where none is known, unless `needed`."""
         found: dict[int, float] = {}
         for leaf, part in zip(self._leaves, self.parts, strict=True):
             try:

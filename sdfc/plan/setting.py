@@ -1,4 +1,4 @@
-"""What is seen besides the solids: camera, lights, sky, live values; with what is pleasant where the scene is silent."""
+"""What is seen besides the solids: camera, lights, sky, live values; and what is pleasant where a scene is silent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The step tree: for each part of a scene, the best rule that it can prove for how far a ray may go (ALGORITHMS B0, B1).
+"""The step tree: for each part of a scene, the best rule that it can prove for how far a ray may go (DESIGN 2).
 
 Every rule answers one question, `next(t)`: the first parameter at or after t where the part may be solid. It answers t
 itself exactly where the ray is inside (or within tolerance of) the part. A union is the least of its parts' answers,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,7 @@ from sdfc.field.numeric import Evaluator
 from sdfc.plan.steps import Part
 from sdfc.shape.definition import Environment, Kind
 from sdfc.shape.graph import Apply
+from sdfc.shape.look import Looks
 from sdfc.shape.lower import Lowering
 from sdfc.shape.material import Material
 
@@ -78,10 +79,11 @@ class _Own:
 class Formulas:
     """The formulas of one scene at given values of its params, float64. Points and directions are (3, n)."""
 
-    def __init__(self, graph: FieldGraph, params: Params) -> None:
+    def __init__(self, graph: FieldGraph, params: Params, materials: Sequence[Material], unpainted: Material) -> None:
         self._graph = graph
         self._params = params
         self._lowering = Lowering()
+        self._looks = Looks(self._lowering, materials, unpainted)
         self._evaluators: dict[tuple[str, int], Evaluator] = {}
         self._owns: dict[int, _Own] = {}
         self._p, self._o, self._d = (graph.input(name) for name in "pod")
@@ -135,6 +137,13 @@ class Formulas:
         if own.linear is not None:
             normal = _product(own.linear.T, normal)
         return np.concatenate([normal, np.broadcast_to(value, (1, p.shape[1]))]) * own.stretch
+
+    def look(self, part: Part, p: Array) -> NDArray[np.int64]:
+        """The indices (n,) of the materials that an operation with several shows."""
+        own = self._own(part)
+        inputs = {"p": own.point(p)}
+        (index,) = self._evaluate("look", own.owner, lambda: [self._looks.index(part.shape, self._p)], inputs)
+        return np.broadcast_to(index, p.shape[1:]).astype(np.int64)
 
     def weights(self, blend: Apply, a: Array, b: Array) -> tuple[Array, Array, Array]:
         """A blend's derivatives by its two operands, and its value, (n,) each, for the operands' values."""

@@ -66,7 +66,7 @@ class _Studio:
         graph: FieldGraph = compiled.scene.values
         values = {p.name: p.default for p in compiled.scene.params} | dict(params)
         self.plan = compiled.plan
-        formulas = Formulas(graph, values)
+        formulas = Formulas(graph, values, compiled.plan.materials, compiled.setting.unpainted)
         self.tracer = StepTracer(compiled.plan, formulas)
         self.fold = SurfaceFold(compiled.plan, formulas)
         self.shader = Shader(graph, compiled.plan, compiled.setting, formulas)

@@ -62,7 +62,7 @@ class SurfaceFold:
         self._plan = plan
         self._formulas = formulas
         self._index = {id(m): i for i, m in enumerate(plan.materials)}
-        self._looks = [formulas.material(m) for m in plan.materials]
+        self._looks = np.stack([formulas.material(m) for m in plan.materials], axis=1)
         self._boxes: dict[int, Box] = {}
 
     def at(self, p: Array) -> Surface:
@@ -111,9 +111,11 @@ class SurfaceFold:
 
     def _leaf(self, part: Part, p: Array, inside: bool, formula: bool = False) -> Surface:
         field = self._formulas.surface(part, p, formula)
-        index = self._index[id(part.material)]
-        look = np.repeat(self._looks[index][:, None], p.shape[1], axis=1)
-        return Surface(np.array(field) if inside else -field, np.full(p.shape[1], index), look)
+        if len(part.looks) > 1:
+            index = self._formulas.look(part, p)
+        else:
+            index = np.full(p.shape[1], self._index[id(part.material)])
+        return Surface(field if inside else -field, index, self._looks[:, index])
 
     def _blend(self, tree: BlendTree, p: Array) -> Surface:
         match tree:
@@ -140,7 +142,7 @@ class SurfaceFold:
     def _empty(self, count: int) -> Surface:
         field = np.zeros((4, count))
         field[1], field[3] = 1.0, FAR
-        return Surface(field, np.zeros(count, np.int64), np.repeat(self._looks[0][:, None], count, axis=1))
+        return Surface(field, np.zeros(count, np.int64), np.repeat(self._looks[:, :1], count, axis=1))
 
     # distances
 

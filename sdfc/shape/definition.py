@@ -1,6 +1,6 @@
 """What a primitive or a distance operation says about itself: parameters, formula, claims.
 
-Definitions come from `field` declarations, the standard library's and a user's alike (DESIGN 2, "one formula, many meanings").
+Definitions come from `field` declarations, the standard library's and a user's alike: one formula, many meanings.
 """
 
 from __future__ import annotations

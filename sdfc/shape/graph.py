@@ -1,4 +1,4 @@
-"""The shape graph: a scene as meant. Interned nodes, no names, no loops; values are expressions over constants and params."""
+"""The shape graph: a scene as meant. Interned nodes, no names, no loops; values are expressions over params."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import TypeAlias, TypeVar
 
 from sdfc.diagnostics import Span
-from sdfc.field.graph import Expr
 from sdfc.shape.definition import Argument, Definition
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
@@ -40,7 +39,7 @@ class Apply(Node):
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Affine(Node):
-    """The child moved by an affine map. Its field is that of the child at `inverse(p)`, times the map's smallest stretch."""
+    """The child moved by an affine map: its field at `inverse(p)`, times the map's smallest stretch."""
 
     forward: Matrix = field(repr=False)
     inverse: Matrix = field(repr=False)

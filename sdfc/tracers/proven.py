@@ -9,6 +9,5 @@ ENTRY = Tracer(
     needs="nothing more than every part has",
     guarantee="nothing missed, nothing invented outside contested pixels; hard CSG of closed-form parts to a few ulps",
     needs_map=False,
-    tolerance=1 / 64,
     needs_steps=True,
 )

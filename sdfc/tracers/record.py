@@ -15,7 +15,6 @@ class Tracer:
     needs: str
     guarantee: str
     needs_map: bool  # whether it reads `float map(vec3 p)`
-    tolerance: float  # in half pixels; never below rounding
     needs_steps: bool  # whether it reads the generated `events` and `march`
 
     @property

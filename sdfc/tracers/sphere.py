@@ -9,6 +9,5 @@ ENTRY = Tracer(
     needs="a Lipschitz constant for every part",
     guarantee="nothing missed; hits are early by up to the tolerance",
     needs_map=True,
-    tolerance=1 / 4,
     needs_steps=False,
 )

@@ -194,7 +194,6 @@ def _component(parameter: Parameter) -> st.SearchStrategy[float]:
 
 # what a random vector hardly ever is: whole, 0 or 1
 _WHOLE = {("repeat", "count"), ("repeat_profile", "count")}
-_FITTING = {
     "repeat",
     "polar_repeat",
     "repeat_profile",
@@ -240,10 +239,7 @@ def subjects(draw: st.DrawFn, name: str, kinds: str = "any") -> Subject:
             break
     else:
         reject()
-    if name in _FITTING:
-        children = {p.name: _fitting(draw, name, arguments, graph) for p in definition.children}
-    else:
-        children = {p.name: draw(_children(p.kind, graph, kinds)) for p in definition.children}
+    children = {p.name: draw(_children(p.kind, graph, kinds)) for p in definition.children}
     return Subject(definition, graph, arguments, children)
 
 
@@ -327,20 +323,3 @@ def _children(draw: st.DrawFn, kind: Kind, graph: FieldGraph, kinds: str) -> Chi
             return _both(graph, simple(), simple())
         case _:
             return _steep(simple(), draw(st.sampled_from([0.5, 2.0])))
-
-
-def _fitting(draw: st.DrawFn, name: str, arguments: Mapping[str, Argument], graph: FieldGraph) -> Child:
-    """A child within its cell, anywhere in it."""
-    if name.startswith("polar"):
-        count = arguments["count"]
-        assert isinstance(count, Expr)
-        room = 0.8 * math.sin(math.pi / count.number) if count.number > 2 else 0.8
-        radius = draw(st.floats(0.2, 1.0)) * room
-        aside = draw(st.floats(-1.0, 1.0)) * (room - radius)
-        return _ball(graph, np.array([0.8, aside] if name.endswith("profile") else [0.8, 0.1, aside]), radius)
-    spacing = arguments["spacing"]
-    assert isinstance(spacing, Expr)
-    half = np.array([0.5 * s if s > 0 else 0.5 for s in spacing.numbers])
-    radius = draw(st.floats(0.2, 1.0)) * float(min(half))
-    center = np.array([draw(st.floats(-1.0, 1.0)) for _ in half]) * (half - radius)
-    return _ball(graph, center, radius)
