@@ -25,9 +25,9 @@ class SunNumbers:
     intensity: float
 
 
-SKY = SkyNumbers(zenith=(0.30, 0.44, 0.68), horizon=(0.88, 0.90, 0.92), ground=(0.36, 0.34, 0.32))
+SKY = SkyNumbers(zenith=(0.19, 0.29, 0.47), horizon=(0.68, 0.70, 0.73), ground=(0.23, 0.225, 0.22))
 SUN_COLOR: Vector = (1.0, 0.89, 0.74)
-SUN_INTENSITY = 3.4
+SUN_INTENSITY = 4.4
 SUN_HEIGHT = math.radians(42.0)
 """The sun's elevation."""
 SUN_LEFT = math.radians(48.0)

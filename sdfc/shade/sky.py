@@ -10,7 +10,7 @@ from sdfc.shade.vector import mix, polynomial, saturate
 
 CURVE = 0.32
 """How fast the horizon's colour gives way to the zenith's: half way up in colour at h = CURVE / (1 + 2 CURVE)."""
-HORIZON_DEPTH = 0.16
+HORIZON_DEPTH = 0.34
 """The height below the horizon where the ground's colour has half come."""
 HORIZON_WIDTH = 0.15
 """The scale of the passage from horizon to ground."""

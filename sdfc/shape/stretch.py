@@ -3,110 +3,192 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator, Sequence
 
-from sdfc.field.graph import Expr, Op, topological
+from sdfc.field.folding import fold
+from sdfc.field.graph import COMPARISON, LOGIC, Expr, Op, topological
 from sdfc.shape.matrix import Matrix
 
-_SAMPLES = (0.137, 0.731, -1.913, 2.618)  # any numbers: an identity between analytic functions holds at all or fails at some
+Rows = Sequence[Sequence[float]]
 
-
-def singular_values(rows: list[list[float]]) -> list[float]:
-    """Of a 3x3 matrix, smallest first, by cyclic Jacobi rotations of M^T M."""
-    m = [[sum(rows[k][i] * rows[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
-    for _ in range(30):
-        if max(abs(m[0][1]), abs(m[0][2]), abs(m[1][2])) <= 1e-17 * (m[0][0] + m[1][1] + m[2][2]):
-            break
-        for i, j in ((0, 1), (0, 2), (1, 2)):
-            if m[i][j] == 0.0:
-                continue
-            theta = 0.5 * math.atan2(2 * m[i][j], m[j][j] - m[i][i])
-            c, s = math.cos(theta), math.sin(theta)
-            for k in range(3):  # columns, then rows
-                m[k][i], m[k][j] = c * m[k][i] - s * m[k][j], s * m[k][i] + c * m[k][j]
-            for k in range(3):
-                m[i][k], m[j][k] = c * m[i][k] - s * m[j][k], s * m[i][k] + c * m[j][k]
-    return sorted(math.sqrt(max(m[i][i], 0.0)) for i in range(3))
-
-
-def _numbers(matrix: Matrix) -> list[list[float]]:
-    return [[e.number for e in row] for row in matrix.linear]
-
-
-def _sampled(matrix: Matrix, shift: float) -> list[list[float]]:
-    """The linear part at one choice of the params."""
-    entries = [e for row in matrix.linear for e in row]
-    values: dict[int, Expr] = {}
-    for node in topological(entries):
-        if node.op is Op.PARAM:
-            numbers = [shift * (1 + 0.1 * i) + 0.01 * (hash_of(str(node.value)) + i) for i in range(node.type.size)]
-            values[node.id] = node.graph.constant(*numbers)
-        else:
-            args = tuple(values[a.id] for a in node.args)
-            values[node.id] = node.graph.add(node.op, *args, value=node.value) if args else node
-    flat = [values[e.id].number for e in entries]
-    return [flat[0:3], flat[3:6], flat[6:9]]
-
-
-def hash_of(name: str) -> int:
-    """A small number from a name, the same in every run."""
-    return sum(ord(c) * (i + 1) for i, c in enumerate(name)) % 97
-
-
-def _in_space(matrix: Matrix, dimension: int) -> Matrix:
-    """A map of the plane as one of space with the same stretches: the third axis gets the first's."""
-    if dimension == 3:
-        return matrix
-    graph = matrix.offset[0].graph
-    first, second, (a, b, _) = matrix.linear
-    height = graph.length(graph.vector(first[0], second[0]))
-    return Matrix((first, second, (a, b, height)), matrix.offset)
+# What is not analytic is a variable of its own: an identity that holds whatever its value is holds for the real one.
+_FREE = frozenset({Op.PARAM, Op.ABS, Op.SIGN, Op.FLOOR, Op.ROUND, Op.MIN, Op.MAX, Op.MOD, Op.SELECT}) | COMPARISON | LOGIC
+_SIZES = (0.7, 3.1, 0.23, 11.0, 1.9, 41.0)  # of the variables, by sample; every other sample has none below 0
+_ENOUGH = 3  # samples with finite entries
+_ROUNDING = 1e-12
+_MARGIN = 1e-9  # outward: singular values are square roots of rounded sums
 
 
 def is_similarity(matrix: Matrix, dimension: int = 3) -> bool:
     """Whether all directions stretch alike, for every value of the params."""
-    matrix = _in_space(matrix, dimension)
-    samples = [_numbers(matrix)] if matrix.is_constant else [_sampled(matrix, s) for s in _SAMPLES]
-    return all(_is_similar(rows) for rows in samples)
-
-
-def _is_similar(rows: list[list[float]]) -> bool:
-    """Whether the columns are orthogonal and of one length, to rounding."""
-    x, y, z = zip(*rows, strict=True)
-    pairs = [math.fsum(a * b for a, b in zip(u, v, strict=True)) for u, v in ((x, x), (y, y), (z, z), (x, y), (x, z), (y, z))]
-    size = pairs[0]
-    return size > 0.0 and all(abs(p - q) <= 1e-12 * size for p, q in zip(pairs, (size, size, size, 0, 0, 0), strict=True))
+    return _always(matrix, dimension, _is_similar)
 
 
 def smallest_stretch(matrix: Matrix, dimension: int = 3) -> Expr:
-    """A lower bound (exact for constants and similarities) of |M v| / |v|."""
-    return _stretch(_in_space(matrix, dimension), 0)
+    """A lower bound of |M v| / |v|; exact for constants, similarities and maps that keep the axes at right angles."""
+    return _stretch(matrix, dimension, is_largest=False)
 
 
 def largest_stretch(matrix: Matrix, dimension: int = 3) -> Expr:
-    """An upper bound (exact for constants and similarities) of |M v| / |v|."""
-    return _stretch(_in_space(matrix, dimension), 2)
+    """An upper bound of |M v| / |v|; exact for constants, similarities and maps that keep the axes at right angles."""
+    return _stretch(matrix, dimension, is_largest=True)
 
 
-def _stretch(matrix: Matrix, which: int) -> Expr:
+def singular_values(rows: Rows) -> list[float]:
+    """Of a square matrix, smallest first, by one-sided Jacobi rotations (Hestenes 1958): small ones are right, too."""
+    columns = [list(column) for column in zip(*rows, strict=True)]
+    pairs = [(i, j) for j in range(len(columns)) for i in range(j)]
+    for _ in range(40):
+        if not any([_rotated(columns[i], columns[j]) for i, j in pairs]):
+            break
+    return sorted(math.hypot(*column) for column in columns)
+
+
+def _rotated(a: list[float], b: list[float]) -> bool:
+    """Make two columns orthogonal; False where they are."""
+    off = _dot(a, b)
+    sizes = math.hypot(*a) * math.hypot(*b)
+    if abs(off) <= 1e-16 * sizes or sizes == 0.0:
+        return False
+    ratio = (_dot(b, b) - _dot(a, a)) / (2.0 * off)
+    tangent = math.copysign(1.0, ratio) / (abs(ratio) + math.hypot(1.0, ratio))
+    c = 1.0 / math.hypot(1.0, tangent)
+    s = c * tangent
+    for k, (x, y) in enumerate(zip(a, b, strict=True)):
+        a[k], b[k] = c * x - s * y, s * x + c * y
+    return True
+
+
+def _dot(a: Sequence[float], b: Sequence[float]) -> float:
+    return sum([x * y for x, y in zip(a, b, strict=True)])
+
+
+def _linear(matrix: Matrix, dimension: int) -> list[list[Expr]]:
+    return [list(row[:dimension]) for row in matrix.linear[:dimension]]
+
+
+def _transposed(rows: Rows) -> Rows:
+    return list(zip(*rows, strict=True))
+
+
+# --- what holds for all values of the params
+
+
+def _always(matrix: Matrix, dimension: int, holds: Callable[[Rows], bool]) -> bool:
+    count = 0
+    for rows in _samples(matrix, dimension):
+        count += 1
+        if not holds(rows):
+            return False
+    return count > 0
+
+
+def _samples(matrix: Matrix, dimension: int) -> Iterator[Rows]:
+    """The linear part: itself, or at some choices of the params (none where too few are defined)."""
+    rows = _linear(matrix, dimension)
+    entries = [e for row in rows for e in row]
+    if all([e.is_constant for e in entries]):
+        yield [[e.number for e in row] for row in rows]
+        return
+    order = list(topological(entries, lambda node: () if node.op in _FREE else node.args))
+    sampled = [_numbers(order, entries, index) for index in range(len(_SIZES))]
+    finite = [numbers for numbers in sampled if all(map(math.isfinite, numbers))]
+    if len(finite) >= _ENOUGH:
+        yield from ([n[k : k + dimension] for k in range(0, dimension**2, dimension)] for n in finite)
+
+
+def _numbers(order: Sequence[Expr], entries: Sequence[Expr], index: int) -> list[float]:
+    """The entries where each variable has some value."""
+    known: dict[int, tuple[float, ...]] = {}
+    for node in order:
+        if node.op in _FREE:
+            draws = [(0.618034 * (len(known) + 1) + 0.445042 * k + 0.147 * index) % 1.0 for k in range(node.type.size)]
+            known[node.id] = tuple([_SIZES[index] * (0.05 + d if index % 2 else 2.0 * d - 1.0) for d in draws])
+        elif node.is_constant:
+            known[node.id] = node.numbers
+        else:
+            known[node.id] = fold(node.op, [known[a.id] for a in node.args], node.type.size, node.value)
+    return [known[e.id][0] for e in entries]
+
+
+def _is_similar(rows: Rows) -> bool:
+    """Whether the columns are orthogonal and of one length, to rounding."""
+    sizes = [math.hypot(*column) for column in zip(*rows, strict=True)]
+    return max(sizes) - min(sizes) <= _ROUNDING * max(sizes) and max(sizes) > 0.0 and _are_orthogonal(rows)
+
+
+def _are_orthogonal(rows: Rows) -> bool:
+    """Whether the columns are at right angles, to rounding."""
+    columns = list(zip(*rows, strict=True))
+    return all(
+        [
+            abs(_dot(a, b)) <= _ROUNDING * math.hypot(*a) * math.hypot(*b)
+            for j, b in enumerate(columns)
+            for a in columns[:j]
+        ]
+    )
+
+
+# --- the bounds
+
+
+def _stretch(matrix: Matrix, dimension: int, is_largest: bool) -> Expr:
     graph = matrix.offset[0].graph
-    columns = [graph.vector(*(row[j] for row in matrix.linear)) for j in range(3)]
-    if is_similarity(matrix):
-        if matrix.is_constant:
-            return graph.constant(_rounded(math.hypot(*(row[0] for row in _numbers(matrix)))))
-        lengths = {round(math.hypot(*(row[0] for row in _sampled(matrix, s))), 9) for s in _SAMPLES}
-        return graph.constant(lengths.pop()) if len(lengths) == 1 else graph.length(columns[0])
-    if matrix.is_constant:
-        # a little outward: the singular values are square roots of rounded sums
-        return graph.constant(singular_values(_numbers(matrix))[which] * (1 - 1e-9 if which == 0 else 1 + 1e-9))
-    if which == 2:
-        squares = [graph.dot(column, column) for column in columns]
-        return graph.sqrt(squares[0] + squares[1] + squares[2])
-    a, b, c = columns
-    faces = [graph.cross(b, c), graph.cross(c, a), graph.cross(a, b)]
-    volume = graph.abs(graph.dot(a, faces[0]))
-    return volume / (graph.length(faces[0]) + graph.length(faces[1]) + graph.length(faces[2]))
+    samples = list(_samples(matrix, dimension))
+    rows = _linear(matrix, dimension)
+    is_constant = all([e.is_constant for row in rows for e in row])
+    if samples and all([_is_similar(s) for s in samples]):
+        return _length_of_all(rows, samples)
+    if is_constant:
+        value = singular_values(samples[0])[-1 if is_largest else 0]
+        return graph.constant(value * (1 + _MARGIN if is_largest else 1 - _MARGIN))
+    if samples and all([_are_orthogonal(s) for s in samples]):
+        return _extreme([_length([row[j] for row in rows]) for j in range(dimension)], is_largest)
+    if samples and all([_are_orthogonal(_transposed(s)) for s in samples]):
+        return _extreme([_length(row) for row in rows], is_largest)
+    norm = _norm([e for row in rows for e in row])
+    if is_largest:
+        return norm
+    if dimension == 2:
+        (a, b), (c, d) = rows
+        return graph.abs(a * d - b * c) / norm
+    first, second, third = (graph.vector(*row) for row in rows)
+    faces = [graph.cross(second, third), graph.cross(third, first), graph.cross(first, second)]
+    # the adjugate over the determinant is the inverse, whose Frobenius norm is no less than its largest stretch
+    volume = graph.abs(graph.dot(first, faces[0]))
+    return volume / _norm([face[k] for face in faces for k in range(3)])
+
+
+def _length_of_all(rows: Sequence[Sequence[Expr]], samples: Sequence[Rows]) -> Expr:
+    """The one length that the columns of a similarity have: a number where it is always the same."""
+    sizes = [math.hypot(*[row[0] for row in sample]) for sample in samples]
+    if max(sizes) - min(sizes) <= _ROUNDING * max(sizes):
+        return rows[0][0].graph.constant(_rounded(sizes[0]))
+    return _length([row[0] for row in rows])
+
+
+def _length(entries: Sequence[Expr]) -> Expr:
+    graph = entries[0].graph
+    others = [e for e in entries if not (e.is_constant and e.number == 0.0)]
+    return graph.abs(others[0]) if len(others) == 1 else graph.length(graph.vector(*entries))
+
+
+def _norm(entries: Sequence[Expr]) -> Expr:
+    graph = entries[0].graph
+    total = graph.constant(0.0)
+    for entry in entries:
+        total = total + entry * entry
+    return graph.sqrt(total)
+
+
+def _extreme(lengths: Sequence[Expr], is_largest: bool) -> Expr:
+    graph = lengths[0].graph
+    result = lengths[0]
+    for length in dict.fromkeys(lengths[1:]):
+        result = graph.max(result, length) if is_largest else graph.min(result, length)
+    return result
 
 
 def _rounded(value: float) -> float:
     """One, where only rounding keeps it from being one."""
-    return 1.0 if abs(value - 1.0) < 1e-12 else value
+    return 1.0 if abs(value - 1.0) < _ROUNDING else value

@@ -194,11 +194,6 @@ def _component(parameter: Parameter) -> st.SearchStrategy[float]:
 
 # what a random vector hardly ever is: whole, 0 or 1
 _WHOLE = {("repeat", "count"), ("repeat_profile", "count")}
-    "repeat",
-    "polar_repeat",
-    "repeat_profile",
-    "polar_repeat_profile",
-}  # their Lipschitz constant is for a child within its cell
 
 
 @st.composite
