@@ -114,7 +114,7 @@ PASSES = (
 def normalise(scene: Scene, after: str | None = None) -> tuple[Shape, Workshop]:
     """The scene's shape after all passes, or after the one named."""
     ranges = Ranges({p.name: _range_of(p.default, p.low, p.high) for p in scene.params})
-    workshop = Workshop(scene, Bounds(ranges), ranges, Library(scene.values))
+    workshop = Workshop(scene, Bounds(scene.values, ranges), ranges, Library(scene.values))
     root = scene.root
     with deep_recursion():
         for step in PASSES:

@@ -43,7 +43,8 @@ def test_commands(command: str, folder: Path) -> None:
     done = subprocess.run(
         [*program, *shlex.split(command)[1:]], cwd=folder, capture_output=True, text=True, timeout=120
     )
-    assert done.returncode == 0, done.stdout + done.stderr
+    fine = (0, 3) if command == "sdfc doctor" else (0,)  # 3: there is no OpenGL, which it says
+    assert done.returncode in fine, done.stdout + done.stderr
     for made in re.findall(r"-o (\S+)", command):
         assert (folder / made).stat().st_size > 0
 

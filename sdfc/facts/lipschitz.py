@@ -6,89 +6,128 @@ import math
 from typing import assert_never
 
 from sdfc.diagnostics import scene_error
-from sdfc.facts.bounds import Bounds, _graph_of, child_facts
-from sdfc.facts.box import Box
+from sdfc.facts.bounds import Bounds, child_facts
+from sdfc.facts.box import Box, everything
+from sdfc.facts.pointwise import is_pointwise
 from sdfc.facts.ranges import Ranges
 from sdfc.field.graph import Type
 from sdfc.shape.definition import Exactness
-from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, children_of, topological
+from sdfc.shape.graph import (
+    Affine,
+    Apply,
+    Complement,
+    Intersection,
+    Nothing,
+    Paint,
+    Shape,
+    Union,
+    children_of,
+    topological,
+)
 from sdfc.shape.lower import lower
-from sdfc.shape.stretch import largest_stretch, smallest_stretch
 
 
 class Lipschitz:
-    """Constants by shape, each over a box in the shape's own space (the box where the shape can matter)."""
+    """Constants by shape: everywhere where all below have claimed one, else over a box in the shape's own space."""
 
     def __init__(self, ranges: Ranges, bounds: Bounds) -> None:
         self._ranges = ranges
         self._bounds = bounds
-        self._made: dict[tuple[int, Box], float] = {}
+        self._everywhere: dict[int, float | None] = {}
+        self._inside: dict[tuple[int, Box], float] = {}
 
     def constant(self, shape: Shape, domain: Box) -> float:
-        key = (shape.id, domain)
-        if key not in self._made:
-            self._made[key] = self._constant(shape, domain)
-        return self._made[key]
+        """Over what of the domain the shape's box holds: the segment to the nearest surface lies in both.
+
+        Raises SceneError where a formula claims nothing, and no bound of its slope can be found.
+        """
+        everywhere = self._global(shape)
+        return self._over(shape, self._bounds.box(shape).meet(domain)) if everywhere is None else everywhere
 
     def is_global(self, shape: Shape) -> bool:
         """Whether every constant below was claimed: then it holds everywhere, not only in a box."""
-        return all(self._is_claimed(node) for node in topological(shape))
+        return self._global(shape) is not None
 
-    def _is_claimed(self, shape: Shape) -> bool:
-        match shape:
-            case Apply():
-                claims = shape.definition.claims
-                return claims.lipschitz is not None or claims.exactness is not Exactness.NONE
-            case _:
-                return True
+    # --- everywhere
 
-    def _constant(self, shape: Shape, domain: Box) -> float:
-        match shape:
+    def _global(self, shape: Shape) -> float | None:
+        if shape.id not in self._everywhere:
+            for node in topological(shape):
+                if node.id not in self._everywhere:
+                    self._everywhere[node.id] = self._claimed_by_all(node)
+        return self._everywhere[shape.id]
+
+    def _claimed_by_all(self, node: Shape) -> float | None:
+        below = [self._everywhere[c.id] for c in children_of(node)]
+        slopes = [slope for slope in below if slope is not None]
+        if len(slopes) < len(below):
+            return None
+        match node:
             case Apply():
-                return self._apply(shape, domain)
-            case Affine():
-                inner = domain
-                if shape.inverse.is_constant:
-                    rows = [[e.number for e in row] for row in shape.inverse.linear]
-                    inner = domain.moved(rows, [e.number for e in shape.inverse.offset])
-                ratio = self._ranges.interval(smallest_stretch(shape.forward, shape.dimension) * largest_stretch(shape.inverse, shape.dimension))[1]
-                ratio = 1.0 if abs(ratio - 1.0) < 1e-6 else ratio
-                return self.constant(shape.child, inner) * ratio
-            case Union() | Intersection() | Complement() | Paint():
-                return max(self.constant(c, domain) for c in children_of(shape))
+                return self._claimed(node, slopes)
+            case Affine() | Union() | Intersection() | Complement() | Paint():
+                return max(slopes)  # an affine map's field is divided by the most that the map steepens it
             case Nothing():
-                return 0.0
+                return 1.0  # any will do; one can be divided by
+            case _:
+                assert_never(node)
+
+    def _claimed(self, node: Apply, slopes: list[float]) -> float | None:
+        """The constant that the node claims over children of these; None where it claims none that is finite."""
+        claims = node.definition.claims
+        if claims.lipschitz is None:
+            return None if claims.exactness is Exactness.NONE else max(slopes, default=1.0)
+        claim = claims.lipschitz
+
+        def most(boxes: list[Box]) -> float:
+            facts = child_facts(self._bounds.values, node, boxes, slopes)
+            return self._ranges.interval(claim(node.environment, facts))[1]
+
+        value = most([everything(c.dimension) for c in node.children])
+        if not math.isfinite(value) and node.children:  # it depends on how large they are
+            value = most([self._bounds.box(c) for c in node.children])
+        return value if math.isfinite(value) else None
+
+    # --- in a box
+
+    def _over(self, shape: Shape, region: Box) -> float:
+        everywhere = self._global(shape)
+        if everywhere is not None:
+            return everywhere
+        key = (shape.id, region)
+        if key not in self._inside:
+            self._inside[key] = self._found(shape, region)
+        return self._inside[key]
+
+    def _found(self, shape: Shape, region: Box) -> float:
+        match shape:
+            case Apply():
+                # where the children are looked at is only known if that is the point itself
+                if shape.children and is_pointwise(shape, self._bounds.values):
+                    claimed = self._claimed(shape, [self._over(c, region) for c in shape.children])
+                    if claimed is not None:
+                        return claimed
+                return self._by_intervals(shape, region)
+            case Affine():
+                return self._over(shape.child, self._bounds.moved(shape.inverse, region))
+            case Union() | Intersection() | Complement() | Paint():
+                return max([self._over(c, region) for c in children_of(shape)])
+            case Nothing():
+                return 1.0  # any will do; one can be divided by
             case _:
                 assert_never(shape)
 
-    def _apply(self, shape: Apply, domain: Box) -> float:
-        claims = shape.definition.claims
-        graph = _graph_of(shape)
-        if claims.lipschitz is not None:
-            boxes = [self._bounds.box(c) for c in shape.children]
-            # a child's own space is not the parent's: its constant is asked for over its own box
-            slopes = [self.constant(c, b) for c, b in zip(shape.children, boxes, strict=True)]
-            value = claims.lipschitz(shape.environment, child_facts(graph, shape, boxes, slopes))
-            claimed = self._ranges.interval(value)[1]
-            if not math.isnan(claimed) and claimed < math.inf:
-                return claimed
-        elif claims.exactness is not Exactness.NONE and shape.definition.is_primitive:
-            return 1.0
-        elif claims.exactness is not Exactness.NONE:
-            return max(self.constant(c, self._bounds.box(c)) for c in shape.children)
-        return self._by_intervals(shape, domain)
-
-    def _by_intervals(self, shape: Apply, domain: Box) -> float:
+    def _by_intervals(self, shape: Apply, region: Box) -> float:
         from sdfc.field.interval import gradient_bound
 
-        own = self._bounds.box(shape).meet(domain)
-        graph = _graph_of(shape)
-        p = graph.input("p", Type.VEC3 if shape.dimension == 3 else Type.VEC2)
-        bound = gradient_bound(lower(shape, p), own.lo, own.hi, self._ranges.of) if not own.is_empty else 1.0
+        if region.is_empty:
+            return 1.0
+        p = self._bounds.values.input("p", Type(shape.dimension))
+        bound = gradient_bound(lower(shape, p), region.lo, region.hi, self._ranges.of)
         if not math.isfinite(bound):
             raise scene_error(
                 f"no bound of the slope of '{shape.definition.name}' could be found"
-                + (" over its box" if own.is_finite else ": it has no bounds"),
+                + (" over its box" if region.is_finite else ": it has no bounds"),
                 shape.span,
                 "claim one (`lipschitz 2`), or keep it in a box: `& box(size: [2, 2, 2])`",
             )

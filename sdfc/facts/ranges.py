@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from sdfc.field.graph import Expr, Type
+from sdfc.field.graph import Expr
 
 Range = tuple[tuple[float, ...], tuple[float, ...]]
 
 
 @dataclass(frozen=True, slots=True)
 class Ranges:
-    """The range of each param, by component."""
+    """The range of each param, by component. For the expressions of one graph."""
 
     of: Mapping[str, Range]
+    _found: dict[int, tuple[list[float], list[float]]] = field(default_factory=dict, repr=False, compare=False)
 
     def interval(self, value: Expr) -> tuple[float, float]:
         """Lower and upper bound of a FLOAT."""
@@ -32,7 +33,9 @@ class Ranges:
                 lo.extend(value.numbers)
                 hi.extend(value.numbers)
             else:
-                low, high = self._live(value)
+                if value.id not in self._found:
+                    self._found[value.id] = self._live(value)
+                low, high = self._found[value.id]
                 lo.extend(low)
                 hi.extend(high)
         return lo, hi
@@ -46,12 +49,3 @@ class Ranges:
         lo, hi = IntervalEvaluator(value).value({}, params)
         size = value.type.size
         return np.broadcast_to(np.ravel(lo), (size,)).tolist(), np.broadcast_to(np.ravel(hi), (size,)).tolist()
-
-
-def as_boolean(ranges: Ranges, condition: Expr) -> bool | None:
-    """True or False where it is that for every value of the params, else None."""
-    assert condition.type is Type.BOOL
-    if condition.is_constant:
-        return bool(condition.numbers[0])
-    lo, hi = ranges.bounds([condition])
-    return bool(lo[0]) if lo[0] == hi[0] else None

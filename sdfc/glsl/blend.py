@@ -30,7 +30,7 @@ class BlendWriter:
     def parts_of(self, blend: Blend) -> list[Part]:
         return list(dict.fromkeys(_parts(blend.tree)))
 
-    def next(self, body: Body, blend: Blend, directions: dict[int, Expr]) -> str:
+    def next(self, body: Body, blend: Blend, directions: dict[int, Expr], cut: bool) -> str:
         name = blend.part.name
         parts = self.parts_of(blend)
         self._function(blend, parts)
@@ -40,10 +40,12 @@ class BlendWriter:
             )
         arguments = ", ".join(f"v_{part.name}" for part in parts)
         body.add(f"float v_{name} = {name}_ahead(0.0, {arguments});", blend.part.span)
-        body.add(f"float left_{name} = {name}_clear(v_{name}, fine, {arguments});")
+        sunk = "3.0 * fine" if cut else "0.0"
+        body.add(f"float left_{name} = {name}_clear(v_{name}, 0.5 * fine - {sunk}, {arguments});")
         least = literal(1.0 / max(blend.lipschitz, 1e-9))
         step = f"max(left_{name}, {least} * v_{name})" if blend.lipschitz != 1.0 else f"max(left_{name}, v_{name})"
-        return f"ball(t, v_{name} <= fine ? v_{name} : {step}, fine)"
+        value = f"v_{name} + {sunk}" if cut else f"v_{name}"
+        return f"ball(t, {value} <= fine ? {value} : {step}, fine)"
 
     def _function(self, blend: Blend, parts: list[Part]) -> None:
         name = blend.part.name
@@ -80,20 +82,20 @@ class BlendWriter:
 
 # Two bounds close in on the root of the concave function: a chord crosses before it, the line through two points on
 # the left crosses after it. The left one is proven, and is the step.
-_CLEAR = """// how far ahead the blend of the tangents stays above eps / 2
-float {name}_clear(float value, float eps, {formal}) {{
-    float left = 0.0, left_value = value - 0.5 * eps;
-    float right = left_value * 4.0 + 1.0, right_value = {name}_ahead(right, {actual}) - 0.5 * eps;
+_CLEAR = """// how far ahead the blend of the tangents stays above `level`
+float {name}_clear(float value, float level, {formal}) {{
+    float left = 0.0, left_value = value - level;
+    float right = left_value * 4.0 + 1.0, right_value = {name}_ahead(right, {actual}) - level;
     if (right_value > 0.0) return right;
     for (int i = 0; i < 4; i++) {{
         float chord = left + (right - left) * left_value / max(left_value - right_value, 1e-30);
-        float at_chord = {name}_ahead(chord, {actual}) - 0.5 * eps;
+        float at_chord = {name}_ahead(chord, {actual}) - level;
         float beyond = chord + (chord - left) * at_chord / max(left_value - at_chord, 1e-30);
         bool closer = at_chord > 0.0 && left_value > at_chord && beyond < right;
         left = at_chord > 0.0 ? chord : left;
         left_value = at_chord > 0.0 ? at_chord : left_value;
         right = closer ? beyond : right;
-        right_value = closer ? {name}_ahead(beyond, {actual}) - 0.5 * eps : right_value;
+        right_value = closer ? {name}_ahead(beyond, {actual}) - level : right_value;
         if (right_value > 0.0) return left;
     }}
     return left * 0.9999996;

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias, assert_never
 
 from sdfc.facts.box import Box
@@ -39,6 +39,20 @@ class TraceText:
     functions: str
     events: bool
     march: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """Where a step is written: the loop's body, the intervals and directions declared before it.
+
+    Inside an intersection (`cut`) what is marched is sunk a little, more than a film is thick that two faces leave which
+    coincide, and asked for all the digits that float32 has.
+    """
+
+    body: Body
+    names: Names
+    directions: dict[int, Expr]
+    cut: bool = False
 
 
 class ProvenWriter:
@@ -94,7 +108,7 @@ class ProvenWriter:
         body.add("do {")
         inner = Body(self._live, 2)
         inner.add("t = next;")
-        inner.add(f"next = {self._next(component, inner, names)};")
+        inner.add(f"next = {self._next(component, Scope(inner, names, {}))};")
         inner.add("steps += 1.0;")
         body.lines += inner.lines
         body.add("} while (next > t && next < FAR);")
@@ -136,7 +150,7 @@ class ProvenWriter:
         inner.add("t = next;")
         inner.add("vec3 p = o + t * d;")
         inner.add("float eps = tolerance(t), fine = rounding(t);")
-        inner.add(f"next = {self._next(root, inner, names, directions)};")
+        inner.add(f"next = {self._next(root, Scope(inner, names, directions))};")
         inner.add("steps += 1.0;")
         inner.add("count += 1;")
         body.lines += inner.lines
@@ -202,7 +216,8 @@ class ProvenWriter:
             case Any() if step.steps:
                 return _chain("min", [self._start(s, names) for s in step.steps])
             case All():
-                return _chain("max", [self._start(s, names) for s in step.steps])
+                proved = [text for text in (self._start(s, names) for s in step.steps) if text != "start"]
+                return _chain("max", proved) if proved else "start"
             case Closed() | Many() | Tangent() | Chord() | Ball() | Blend() | Any():
                 return "start"
             case _:
@@ -210,66 +225,51 @@ class ProvenWriter:
 
     # the tree
 
-    def _next(self, step: Step, body: Body, names: Names, directions: dict[int, Expr] | None = None) -> str:
+    def _next(self, step: Step, scope: Scope) -> str:
         match step:
             case Closed():
-                return f"{'enter' if step.inside else 'leave'}({names[id(step.part), step.inside]}, t)"
+                return f"{'enter' if step.inside else 'leave'}({scope.names[id(step.part), step.inside]}, t)"
             case Many():
                 raise AssertionError("many parts are members of the scene's union, which is solved by events")
             case Tangent():
-                value = self._blends.slope(body, step.part, (directions or {})[id(step.part)])
-                return f"tangent(t, {value}, fine)"
+                value = self._blends.slope(scope.body, step.part, scope.directions[id(step.part)])
+                return f"tangent(t, {f'vec2(3.0 * fine, 0.0) + {value}' if scope.cut else value}, fine)"
             case Chord():
-                return self._chord(step, body, (directions or {})[id(step.part)])
+                return self._chord(step, scope.body, scope.directions[id(step.part)])
             case Ball():
-                return self._ball(step, body)
+                return self._ball(step, scope)
             case Blend():
-                return self._blends.next(body, step, directions or {})
+                return self._blends.next(scope.body, step, scope.directions, scope.cut)
             case Within():
-                return f"inside({step.name}, t, {self._next(step.step, body, names, directions)})"
+                return f"inside({step.name}, t, {self._next(step.step, scope)})"
             case Any():
-                return self._joined("min", "near", step.steps, body, names, directions)
+                return self._joined("min", "near", step.steps, scope)
             case All():
-                return self._joined("max", "far", step.steps, body, names, directions)
+                return self._joined("max", "far", step.steps, replace(scope, cut=True))
             case _:
                 assert_never(step)
 
-    def _joined(
-        self,
-        operation: str,
-        label: str,
-        steps: tuple[Step, ...],
-        body: Body,
-        names: Names,
-        directions: dict[int, Expr] | None,
-    ) -> str:
+    def _joined(self, operation: str, label: str, steps: tuple[Step, ...], scope: Scope) -> str:
         if not steps:
             return "FAR"
-        texts = self._operands(operation, steps, body, names, directions)
+        texts = self._operands(operation, steps, scope)
         if len(texts) <= 3:
             return _chain(operation, texts)
         self._count += 1
         name = f"{label}_{self._count}"
-        body.add(f"float {name} = {texts[0]};")
+        scope.body.add(f"float {name} = {texts[0]};")
         for text in texts[1:]:
-            body.add(f"{name} = {operation}({name}, {text});")
+            scope.body.add(f"{name} = {operation}({name}, {text});")
         return name
 
-    def _operands(
-        self,
-        operation: str,
-        steps: tuple[Step, ...],
-        body: Body,
-        names: Names,
-        directions: dict[int, Expr] | None,
-    ) -> list[str]:
+    def _operands(self, operation: str, steps: tuple[Step, ...], scope: Scope) -> list[str]:
         """One text a step; the convex closed-form parts of an intersection meet in one interval first."""
         texts: list[str] = []
         convex = [s for s in steps if isinstance(s, Closed) and s.inside and s.intervals == 1]
         if operation == "max" and len(convex) > 1:
-            texts.append(f"enter({_chain('both', [names[id(s.part), True] for s in convex])}, t)")
+            texts.append(f"enter({_chain('both', [scope.names[id(s.part), True] for s in convex])}, t)")
             steps = tuple(s for s in steps if s not in convex)
-        return texts + [self._next(s, body, names, directions) for s in steps]
+        return texts + [self._next(s, scope) for s in steps]
 
     def _chord(self, step: Chord, body: Body, direction: Expr) -> str:
         """The value is looked at once more, where the tangent (or the part's box) ends."""
@@ -283,16 +283,17 @@ class ProvenWriter:
         scale = "" if part.stretch.is_constant and part.stretch.number == 1.0 else f"{body.text(part.stretch)} * "
         return f"chord(t, v_{name}.x, reach_{name}, {scale}{text}.x, fine)"
 
-    def _ball(self, step: Ball, body: Body) -> str:
-        part = step.part
-        value = body.call(
-            self._functions.of_part(part, Role.VALUE), [body.point(own_point(part.inverse, self._p), f"q_{part.name}")]
-        )
+    def _ball(self, step: Ball, scope: Scope) -> str:
+        part, body = step.part, scope.body
+        q = body.point(own_point(part.inverse, self._p), f"q_{part.name}")
+        value = body.call(self._functions.of_part(part, Role.VALUE), [q])
         scale = part.stretch * (1.0 / max(step.lipschitz, 1e-9))
-        factor = "" if scale.is_constant and scale.number == 1.0 else f"{body.text(scale)} * "
+        if not (scale.is_constant and scale.number == 1.0):
+            value = f"{body.text(scale)} * {value}"
+        eps = "fine" if scope.cut else "eps"
         if step.inside:
-            return f"ball(t, {factor}{value}, eps)"
-        return f"ball(t, 3.0 * eps - {factor}{value}, eps)"
+            return f"ball(t, {'3.0 * fine + ' if scope.cut else ''}{value}, {eps})"
+        return f"ball(t, 3.0 * {eps} - {value}, {eps})"
 
     def _function(self, head: str, body: Body, doc: str) -> None:
         self._texts.append("\n".join([f"// {doc}", head + " {", *body.lines, "}", ""]))

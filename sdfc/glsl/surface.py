@@ -65,6 +65,7 @@ class SurfaceWriter:
         self._many = many  # None: nothing has recorded the nearest of many
         self._names = {id(m): functions.names.fresh(f"{m.name}_material") for m in materials}
         self._painted = False
+        self._declared: set[str] = set()
         self._varying = [p for p in PROPERTIES if len({_property(m, p).id for m in materials}) > 1]
         self._p = graph.input("p")
         self._count = 0
@@ -136,8 +137,11 @@ class SurfaceWriter:
 
     def _fold(self, step: Step, body: Body) -> str:
         match step:
-            case Closed() | Ball():
+            case Closed():
                 return self._leaf(step.part, body, step.inside, Role.SURFACE)
+            case Ball():
+                # over its constant: then the gradient says how much of a distance the value is
+                return self._leaf(step.part, body, step.inside, Role.SURFACE, 1.0 / max(step.lipschitz, 1e-9))
             case Tangent():
                 return self._leaf(step.part, body, True, Role.SURFACE)
             case Chord():
@@ -175,22 +179,25 @@ class SurfaceWriter:
         self._painted = True
         return f"painted({field}, {self._many.record(step).material})"
 
-    def _leaf(self, part: Part, body: Body, inside: bool, role: Role) -> str:
+    def _leaf(self, part: Part, body: Body, inside: bool, role: Role, scale: float = 1.0) -> str:
+        stretch = part.stretch * scale
         q = body.point(own_point(part.inverse, self._p), f"q_{part.name}")
         field = body.call(self._functions.of_part(part, role), [q])
         if part.inverse is not None and not is_translation(part.inverse):
-            name = f"g_{part.name}{'' if inside else '_cut'}"
-            body.declare(Type.VEC4, name, field, part.span)
-            field = body.text(self._turned(part, name))
-        elif not (part.stretch.is_constant and part.stretch.number == 1.0):
-            field = f"{body.text(part.stretch)} * {field}"
+            name = f"g_{part.name}{'' if role is Role.SURFACE else '_distance'}"
+            if name not in self._declared:  # a part may have several places in the tree
+                self._declared.add(name)
+                body.declare(Type.VEC4, name, field, part.span)
+            field = body.text(self._turned(part, name, stretch))
+        elif not (stretch.is_constant and stretch.number == 1.0):
+            field = f"({body.text(stretch)} * {field})"
         if len(part.looks) > 1:
             self._painted = True
             look = body.call(self._functions.of_part(part, Role.LOOK), [q])
             return f"painted({'' if inside else '-'}{field}, {look})"
         return f"{self._names[id(part.material)]}({'' if inside else '-'}{field})"
 
-    def _turned(self, part: Part, name: str) -> Expr:
+    def _turned(self, part: Part, name: str, stretch: Expr) -> Expr:
         """The gradient in the scene's space: A^T g for the map p -> A p + b to the part's own space."""
         assert part.inverse is not None
         own = self._graph.input(name, Type.VEC4)
@@ -199,7 +206,7 @@ class SurfaceWriter:
         columns = [(a[0][j], a[1][j], a[2][j]) for j in range(3)]
         transposed = Matrix((columns[0], columns[1], columns[2]), (zero, zero, zero))
         g = transposed.direction(own.swizzle("xyz"))
-        return self._graph.vector(g[0], g[1], g[2], own[3]) * part.stretch
+        return self._graph.vector(g[0], g[1], g[2], own[3]) * stretch
 
     def _blend(self, tree: BlendTree, body: Body) -> str:
         match tree:

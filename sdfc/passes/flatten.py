@@ -2,62 +2,106 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import assert_never
 
-from sdfc.passes.rewrite import rewrite
-from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, ShapeGraph, Union
+from sdfc.shape.graph import (
+    Affine,
+    Apply,
+    Complement,
+    Intersection,
+    Nothing,
+    Paint,
+    Shape,
+    ShapeGraph,
+    Union,
+    children_of,
+    topological,
+)
 
 
 def flatten(root: Shape, graph: ShapeGraph) -> Shape:
     """Afterwards no union is a child of a union, no intersection of an intersection, no complement of a complement,
-    each has two different children or more, and Nothing is at the root or nowhere (outside operations)."""
-    return rewrite(root, graph, lambda shape: _flat(shape, graph))
+    each has two different children or more, and Nothing (or its complement) is at the root, in an operation or
+    nowhere."""
+    made: dict[int, Shape] = {}
+    needed = _needed(root)
+    for shape in topological(root):
+        if shape.id in needed:
+            made[shape.id] = _flat(shape, made, graph)
+    return made[root.id]
 
 
-def _is_everything(shape: Shape) -> bool:
-    match shape:
-        case Complement(child=Nothing()):
-            return True
-        case _:
-            return False
+def _needed(root: Shape) -> set[int]:
+    """The nodes that do not merely disappear in a parent of their own kind: chains are as long as scenes are."""
+    needed = {root.id}
+    for shape in topological(root):
+        match shape:
+            case Union() | Intersection():
+                needed.update(c.id for c in shape.children if type(c) is not type(shape))
+            case _:
+                needed.update(c.id for c in children_of(shape))
+    return needed
 
 
-def _flat(shape: Shape, graph: ShapeGraph) -> Shape:
+def _flat(shape: Shape, made: dict[int, Shape], graph: ShapeGraph) -> Shape:
     match shape:
         case Union():
-            for child in shape.children:
-                if _is_everything(child):
-                    return child
-            parts = _spliced(shape.children, Union)
-            kept = [c for c in parts if not _is_nothing(c)]
-            return _joined(kept, shape, graph)
+            parts = _spliced(shape, made)
+            everything = [part for part in parts if is_everything(part)]
+            kept = [part for part in parts if not is_nothing(part)]
+            if everything or len(kept) < 2:
+                return (everything or kept or parts)[0]
+            return graph.union(kept, shape.span)
         case Intersection():
-            for child in shape.children:
-                if _is_nothing(child):
-                    return child
-            parts = _spliced(shape.children, Intersection)
-            kept = [c for c in parts if not _is_everything(c)]
-            return _joined(kept, shape, graph) if kept else shape.children[0]
+            parts = _spliced(shape, made)
+            empty = [part for part in parts if is_nothing(part)]
+            kept = [part for part in parts if not is_everything(part)]
+            if empty or len(kept) < 2:
+                return (empty or kept or parts)[0]
+            return graph.intersection(kept, shape.span)
         case Complement():
-            return _uncomplemented(shape)
+            return _uncomplemented(made[shape.child.id], shape, graph)
         case Affine() | Paint():
-            return shape.child if _is_nothing(shape.child) or _is_everything(shape.child) else shape
-        case Apply() | Nothing():
+            child = made[shape.child.id]
+            return child if is_nothing(child) or is_everything(child) else graph.with_children(shape, (child,))
+        case Apply():
+            return graph.with_children(shape, tuple([made[c.id] for c in shape.children]))
+        case Nothing():
             return shape
         case _:
             assert_never(shape)
 
 
-def _uncomplemented(shape: Complement) -> Shape:
-    match shape.child:
+def _spliced(shape: Union | Intersection, made: dict[int, Shape]) -> Sequence[Shape]:
+    """The parts of a nest of one kind, in order; a part named twice stays once (a set algebra: a | a = a)."""
+    kind = type(shape)
+    parts: dict[int, Shape] = {}
+    seen: set[int] = set()
+    stack: list[Shape] = [shape]
+    while stack:
+        node = stack.pop()
+        if node.id in seen:
+            continue
+        seen.add(node.id)
+        flat = made.get(node.id, node)  # what is not made is of the nest
+        if isinstance(flat, kind):
+            stack.extend(reversed(flat.children))
+        else:
+            parts.setdefault(flat.id, flat)
+    return list(parts.values())
+
+
+def _uncomplemented(child: Shape, shape: Complement, graph: ShapeGraph) -> Shape:
+    match child:
         case Complement(child=inner):
             return inner
         case _:
-            return shape
+            return graph.with_children(shape, (child,))
 
 
-def _is_nothing(shape: Shape) -> bool:
+def is_nothing(shape: Shape) -> bool:
+    """Whether it is the empty solid."""
     match shape:
         case Nothing():
             return True
@@ -65,20 +109,10 @@ def _is_nothing(shape: Shape) -> bool:
             return False
 
 
-def _spliced(children: Iterable[Shape], kind: type[Union] | type[Intersection]) -> list[Shape]:
-    """Children of the same kind replaced by theirs; a part named twice stays once (a set algebra: a | a = a)."""
-    parts: dict[int, Shape] = {}
-    for child in children:
-        for part in child.children if isinstance(child, kind) else (child,):
-            parts.setdefault(part.id, part)
-    return list(parts.values())
-
-
-def _joined(parts: list[Shape], shape: Union | Intersection, graph: ShapeGraph) -> Shape:
-    if not parts:
-        return graph.nothing(shape.span, shape.dimension)
-    if len(parts) == 1:
-        return parts[0]
-    if isinstance(shape, Union):
-        return graph.union(parts, shape.span)
-    return graph.intersection(parts, shape.span)
+def is_everything(shape: Shape) -> bool:
+    """Whether it is the complement of the empty solid."""
+    match shape:
+        case Complement(child=Nothing()):
+            return True
+        case _:
+            return False

@@ -3,53 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import assert_never
 
-from sdfc.passes.rewrite import rewrite
+from sdfc.passes.rewrite import descend
 from sdfc.shape.definition import Definition
-from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, ShapeGraph, Union
+from sdfc.shape.graph import Apply, Complement, Intersection, Shape, ShapeGraph, Union, children_of
 
 Lookup = Callable[[str], Definition | None]
 
 
 def negate(root: Shape, graph: ShapeGraph, definition: Lookup) -> Shape:
     """Afterwards a Complement stands only on a leaf: a primitive or an operation without a dual, placed and painted or
-    not. `definition` finds the dual of a blend by name."""
-    negator = _Negator(graph, definition)
-    return rewrite(root, graph, negator.change)
+    not, or Nothing. `definition` finds the dual of a blend by name."""
 
+    def dual_of(shape: Shape) -> Definition | None:
+        match shape:
+            case Apply():
+                dual = shape.definition.claims.dual
+                return None if dual is None else definition(dual)
+            case _:
+                return None
 
-class _Negator:
-    def __init__(self, graph: ShapeGraph, definition: Lookup) -> None:
-        self._graph = graph
-        self._definition = definition
-        self._made: dict[int, Shape] = {}
-
-    def change(self, shape: Shape) -> Shape:
+    def below(shape: Shape, negative: bool) -> list[tuple[Shape, bool]]:
         match shape:
             case Complement():
-                return self.negated(shape.child)
+                return [(shape.child, not negative)]
+            case Union() | Intersection():
+                return [(c, negative) for c in shape.children]
             case _:
-                return shape
+                inner = negative and dual_of(shape) is not None
+                return [(c, inner) for c in children_of(shape)]
 
-    def negated(self, shape: Shape) -> Shape:
-        if shape.id not in self._made:
-            self._made[shape.id] = self._negate(shape)
-        return self._made[shape.id]
-
-    def _negate(self, shape: Shape) -> Shape:
+    def make(shape: Shape, negative: bool, children: tuple[Shape, ...]) -> Shape:
         match shape:
             case Complement():
-                return shape.child
-            case Union():
-                return self._graph.intersection([self.negated(c) for c in shape.children], shape.span)
-            case Intersection():
-                return self._graph.union([self.negated(c) for c in shape.children], shape.span)
-            case Apply() if shape.definition.claims.dual is not None:
-                dual = self._definition(shape.definition.claims.dual)
-                assert dual is not None, f"the dual of {shape.definition.name} is not defined"
-                return self._graph.apply(dual, shape.arguments, [self.negated(c) for c in shape.children], shape.span)
-            case Apply() | Affine() | Paint() | Nothing():
-                return self._graph.complement(shape, shape.span)
+                return children[0]
+            case Union() if negative:
+                return graph.intersection(children, shape.span)
+            case Intersection() if negative:
+                return graph.union(children, shape.span)
+            case Apply() if negative:
+                dual = dual_of(shape)
+                if dual is not None:
+                    return graph.apply(dual, shape.arguments, children, shape.span)
             case _:
-                assert_never(shape)
+                pass
+        kept = graph.with_children(shape, children)
+        return graph.complement(kept, shape.span) if negative else kept
+
+    return descend(root, False, below, make)

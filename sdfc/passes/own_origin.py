@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box, nothing
 from sdfc.field.graph import FieldGraph
 from sdfc.shape.graph import Affine, Apply, Shape, ShapeGraph, children_of
-from sdfc.shape.matrix import scaling, translation
+from sdfc.shape.matrix import Matrix, identity, scaling, translation
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,25 +43,25 @@ def own_origin(root: Shape, graph: ShapeGraph, values: FieldGraph, frame: Frame)
 def _finite_parts(root: Shape, bounds: Bounds) -> Box:
     """The box of all nodes with a finite box that no such node holds, in the root's coordinates."""
     result = nothing()
-    stack: list[tuple[Shape, list[Affine]]] = [(root, [])]
-    seen: set[tuple[int, ...]] = set()
+    start = identity(bounds.values)
+    stack: list[tuple[Shape, Matrix]] = [(root, start)]
+    seen: set[tuple[int, tuple[int, ...]]] = set()
     while stack:
-        shape, path = stack.pop()
-        key = (shape.id, *(a.id for a in path))
+        shape, forward = stack.pop()
+        key = (shape.id, forward.key)
         if key in seen:
             continue
         seen.add(key)
         box = bounds.box(shape)
         if box.is_finite:
-            for affine in reversed(path):
-                box = bounds.moved(affine.forward, box)
-            result = result.hull(box) if all(map(math.isfinite, (*box.lo, *box.hi))) else result
+            moved = bounds.moved(forward, box)
+            result = result.hull(moved) if moved.is_finite else result
             continue
         match shape:
             case Affine():
-                stack.append((shape.child, [*path, shape]))
+                stack.append((shape.child, forward.after(shape.forward)))
             case Apply():
                 pass  # an operation may move its children anywhere
             case _:
-                stack.extend((c, path) for c in children_of(shape))
+                stack.extend((c, forward) for c in children_of(shape))
     return result

@@ -4,7 +4,20 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, ShapeGraph, Union
+from sdfc.passes.rewrite import descend
+from sdfc.shape.graph import (
+    Affine,
+    Apply,
+    Complement,
+    Intersection,
+    Nothing,
+    Paint,
+    Shape,
+    ShapeGraph,
+    Union,
+    children_of,
+    topological,
+)
 from sdfc.shape.material import Material
 
 
@@ -14,60 +27,40 @@ def paint(root: Shape, graph: ShapeGraph) -> Shape:
     The nearest material wins: a part keeps its own where the whole is painted later. What cuts a part, and has no
     material of its own, shows the part's first one on the cut.
     """
-    return _Painter(graph).painted(root, None)
+    first = _first_materials(root)
 
-
-class _Painter:
-    def __init__(self, graph: ShapeGraph) -> None:
-        self._graph = graph
-        self._made: dict[tuple[int, int], Shape] = {}
-        self._first: dict[int, Material | None] = {}
-
-    def painted(self, shape: Shape, material: Material | None) -> Shape:
-        key = (shape.id, id(material))
-        if key not in self._made:
-            self._made[key] = self._paint(shape, material)
-        return self._made[key]
-
-    def _paint(self, shape: Shape, material: Material | None) -> Shape:
+    def below(shape: Shape, material: Material | None) -> list[tuple[Shape, Material | None]]:
         match shape:
             case Paint():
-                return self.painted(shape.child, shape.material)
-            case Apply() if shape.definition.is_primitive:
-                return shape if material is None else self._graph.paint(material, shape, shape.span)
+                return [(shape.child, shape.material)]
             case Intersection():
-                cut = self._first_material(shape.children[0]) or material
-                rest = [self.painted(c, cut) for c in shape.children[1:]]
-                return self._graph.with_children(shape, (self.painted(shape.children[0], material), *rest))
-            case Union() | Apply():
-                children = [self.painted(c, material) for c in shape.children]
-                return self._graph.with_children(shape, tuple(children))
-            case Affine() | Complement():
-                return self._graph.with_children(shape, (self.painted(shape.child, material),))
-            case Nothing():
-                return shape
+                cut = first[shape.children[0].id] or material
+                return [(shape.children[0], material), *((c, cut) for c in shape.children[1:])]
+            case Apply() | Union() | Affine() | Complement() | Nothing():
+                return [(c, material) for c in children_of(shape)]
             case _:
                 assert_never(shape)
 
-    def _first_material(self, shape: Shape) -> Material | None:
-        """The material of the first painted part."""
-        if shape.id not in self._first:
-            self._first[shape.id] = self._find(shape)
-        return self._first[shape.id]
-
-    def _find(self, shape: Shape) -> Material | None:
+    def make(shape: Shape, material: Material | None, children: tuple[Shape, ...]) -> Shape:
         match shape:
             case Paint():
-                return shape.material
-            case Affine() | Complement():
-                return self._first_material(shape.child)
-            case Apply() | Union() | Intersection():
-                for child in shape.children:
-                    found = self._first_material(child)
-                    if found is not None:
-                        return found
-                return None
-            case Nothing():
-                return None
+                return children[0]
+            case Apply() if shape.definition.is_primitive:
+                return shape if material is None else graph.paint(material, shape, shape.span)
             case _:
-                assert_never(shape)
+                return graph.with_children(shape, children)
+
+    return descend(root, None, below, make)
+
+
+def _first_materials(root: Shape) -> dict[int, Material | None]:
+    """By node: the material of its first painted part."""
+    first: dict[int, Material | None] = {}
+    for shape in topological(root):
+        match shape:
+            case Paint():
+                first[shape.id] = shape.material
+            case _:
+                found = (first[c.id] for c in children_of(shape))
+                first[shape.id] = next((m for m in found if m is not None), None)
+    return first

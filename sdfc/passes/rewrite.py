@@ -1,16 +1,36 @@
-"""Walking a shape graph bottom-up."""
+"""Walking a shape graph from above, with something handed down: a map, a material, a sign."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable, Sequence
+from typing import TypeVar
 
-from sdfc.shape.graph import Shape, ShapeGraph, children_of, topological
+from sdfc.shape.graph import Shape
+
+Given = TypeVar("Given", bound=Hashable)
 
 
-def rewrite(root: Shape, graph: ShapeGraph, change: Callable[[Shape], Shape]) -> Shape:
-    """`change` at every node, children first; each node is offered once, with its children already changed."""
-    made: dict[int, Shape] = {}
-    for shape in topological(root):
-        children = tuple(made[c.id] for c in children_of(shape))
-        made[shape.id] = change(graph.with_children(shape, children))
-    return made[root.id]
+def descend(
+    root: Shape,
+    given: Given,
+    below: Callable[[Shape, Given], Sequence[tuple[Shape, Given]]],
+    make: Callable[[Shape, Given, tuple[Shape, ...]], Shape],
+) -> Shape:
+    """The root, rewritten: `below` says what a node with what it was given asks for, `make` makes its successor from
+    the answers. A node is made once for everything that it is given. Iterative: depth is no limit."""
+    made: dict[tuple[int, Given], Shape] = {}
+    opened: dict[tuple[int, Given], Sequence[tuple[Shape, Given]]] = {}
+    stack = [(root, given)]
+    while stack:
+        shape, own = stack[-1]
+        key = (shape.id, own)
+        if key in made:
+            stack.pop()
+        elif key in opened:
+            answers = tuple([made[child.id, handed] for child, handed in opened.pop(key)])
+            made[key] = make(shape, own, answers)
+            stack.pop()
+        else:
+            opened[key] = below(shape, own)
+            stack.extend(reversed(opened[key]))
+    return made[root.id, given]

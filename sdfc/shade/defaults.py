@@ -25,7 +25,7 @@ class SunNumbers:
     intensity: float
 
 
-SKY = SkyNumbers(zenith=(0.19, 0.29, 0.47), horizon=(0.68, 0.70, 0.73), ground=(0.23, 0.225, 0.22))
+SKY = SkyNumbers(zenith=(0.21, 0.32, 0.52), horizon=(0.86, 0.88, 0.91), ground=(0.23, 0.225, 0.22))
 SUN_COLOR: Vector = (1.0, 0.89, 0.74)
 SUN_INTENSITY = 4.4
 SUN_HEIGHT = math.radians(42.0)

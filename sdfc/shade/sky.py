@@ -17,9 +17,9 @@ HORIZON_WIDTH = 0.15
 SEAM = 0.02
 """How softly the upper gradient starts at the horizon, in h: no line is seen there."""
 
-ZENITH_UNDER_COSINE = (0.3295, 0.425, 0.0613, 0.0, 0.0324)
+ZENITH_UNDER_COSINE = (0.3327, 0.4265, 0.0602, 0.0, 0.0319)
 """The zenith's share of the mean sky under a cosine lobe whose axis has height c: a polynomial in c."""
-GROUND_UNDER_COSINE = (0.4026, -0.464, 0.0329, 0.0, 0.0374)
+GROUND_UNDER_COSINE = (0.2954, -0.4207, 0.0794, 0.0, 0.0512)
 """The same for the ground's share. Both are least-squares fits of this module's weights; a test integrates them."""
 
 SKY_COLORS = (("zenith", Type.VEC3), ("horizon", Type.VEC3), ("ground", Type.VEC3))

@@ -20,13 +20,14 @@ GRAZING = 1e-4
 """The least cosine with the view: a normal of a visible surface turns away from the viewer only by rounding."""
 
 _LOST = (
-    (2.463, -6.018, 2.149, 0.535),
-    (-5.748, 21.017, -14.48, 2.652),
-    (3.43, -13.72, 11.133, -2.711),
+    (6.033, -28.663, 38.325, -15.85),
+    (-22.976, 130.466, -190.177, 82.835),
+    (29.036, -176.513, 273.082, -122.696),
+    (-12.016, 76.425, -123.158, 56.543),
 )
 """1 - E(c, r), what GGX of one bounce loses, is the sum of row i, column j times r^(i + 2) c^j."""
-_LOST_MEAN = tuple(sum(2.0 * value / (j + 2) for j, value in enumerate(row)) for row in _LOST)
-"""Its mean over directions, 2 times the integral of (1 - E) c dc, term by term."""
+_LOST_MEAN = (0.1594, -0.597, 3.7362, -2.7721)
+"""Its mean over directions, 2 times the integral of (1 - E) c dc: the sum of entry i times r^(i + 2)."""
 _DIELECTRIC_MEAN = (0.0848, -0.002, -0.1774, 0.1146)
 """The mean reflectance of a dielectric, in powers of roughness."""
 
@@ -54,8 +55,15 @@ def surface(graph: FieldGraph) -> Surface:
 
 def lost(cosine: Expr, roughness: Expr) -> Expr:
     """The energy that one bounce on GGX loses along `cosine`, were the facets perfect mirrors."""
-    rows = [polynomial(cosine, row) for row in _LOST]
-    return saturate(square(roughness) * (rows[0] + roughness * (rows[1] + roughness * rows[2])))
+    result = polynomial(cosine, _LOST[-1])
+    for row in reversed(_LOST[:-1]):
+        result = result * roughness + polynomial(cosine, row)
+    return saturate(square(roughness) * result)
+
+
+def lost_mean(roughness: Expr) -> Expr:
+    """The mean of `lost` over all directions, never 0."""
+    return square(roughness) * polynomial(roughness, _LOST_MEAN)
 
 
 def fresnel_share(cosine: Expr, roughness: Expr) -> Expr:
@@ -71,9 +79,9 @@ def dielectric_albedo(cosine: Expr, roughness: Expr) -> Expr:
 
 def between_facets(look: Surface) -> Expr:
     """The colour (VEC3) of light after two or more bounces between facets (Kulla and Conty 2017)."""
-    lost_mean = square(look.roughness) * polynomial(look.roughness, _LOST_MEAN)
+    gone = lost_mean(look.roughness)
     fresnel_mean = look.normal_reflectance * (20.0 / 21.0) + 1.0 / 21.0
-    return square(fresnel_mean) * (1.0 - lost_mean) / (1.0 - fresnel_mean * lost_mean)
+    return square(fresnel_mean) * (1.0 - gone) / (1.0 - fresnel_mean * gone)
 
 
 def _microfacets(half: Expr, normal: Expr, n_l: Expr, n_v: Expr, alpha: Expr) -> Expr:
@@ -99,9 +107,8 @@ def reflect_light(graph: FieldGraph) -> Function:
     fresnel = fifth_power(saturate(1.0 - graph.dot(view, half)))
     facets = mix(look.normal_reflectance, graph.constant(1.0, 1.0, 1.0), fresnel)
     once = facets * _microfacets(half, normal, n_l, n_v, square(look.roughness))
-    lost_mean = square(look.roughness) * polynomial(look.roughness, _LOST_MEAN)
     lost_both = lost(n_l, look.roughness) * lost(n_v, look.roughness)
-    again = between_facets(look) * (lost_both / (math.pi * graph.max(lost_mean, 1e-5)))
+    again = between_facets(look) * (lost_both / (math.pi * lost_mean(look.roughness)))
     left = (1.0 - dielectric_albedo(n_l, look.roughness)) * (1.0 - dielectric_albedo(n_v, look.roughness))
     diffuse = look.diffuse * (left / (math.pi * (1.0 - polynomial(look.roughness, _DIELECTRIC_MEAN))))
     return Function(

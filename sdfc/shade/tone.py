@@ -20,9 +20,9 @@ LOWEST, HIGHEST = -12.47393, 4.026069
 """The exposures, in stops (log2 of radiance), that become black and white."""
 CURVE = (-0.00232, 0.1191, 0.4298, -6.868, 31.96, -40.14, 15.5)
 """The film curve over the exposures scaled to 0 .. 1, in powers."""
-EXPOSURE = 1.9
+EXPOSURE = 1.6
 """What radiance is multiplied with first."""
-CONTRAST = 1.45
+CONTRAST = 1.5
 SATURATION = 1.3
 """The look that follows the curve; Wrensch's `punchy` has 1.35 and 1.4, no look has 1 and 1."""
 

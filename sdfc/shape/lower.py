@@ -39,7 +39,8 @@ class Lowering:
             case Apply():
                 return self._apply(shape, p)
             case Affine():
-                return self.value(shape.child, shape.inverse.apply(p)) * smallest_stretch(shape.forward, shape.dimension)
+                stretch = smallest_stretch(shape.forward, shape.dimension)
+                return self.value(shape.child, shape.inverse.apply(p)) * stretch
             case Union():
                 return combined(graph.min, [self.value(c, p) for c in shape.children])
             case Intersection():
@@ -77,5 +78,3 @@ def lower_gauge(shape: Apply, p: Expr) -> Expr:
     """The primitive's gauge at `p`: its zero set is the formula's."""
     gauge = shape.definition.claims.gauge
     return shape.definition.formula(p, shape.environment, {}) if gauge is None else gauge(p, shape.environment)
-
-

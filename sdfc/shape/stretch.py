@@ -12,7 +12,8 @@ from sdfc.shape.matrix import Matrix
 Rows = Sequence[Sequence[float]]
 
 # What is not analytic is a variable of its own: an identity that holds whatever its value is holds for the real one.
-_FREE = frozenset({Op.PARAM, Op.ABS, Op.SIGN, Op.FLOOR, Op.ROUND, Op.MIN, Op.MAX, Op.MOD, Op.SELECT}) | COMPARISON | LOGIC
+_JUMPS = frozenset({Op.ABS, Op.SIGN, Op.FLOOR, Op.ROUND, Op.MIN, Op.MAX, Op.MOD, Op.SELECT}) | COMPARISON | LOGIC
+_FREE = _JUMPS | {Op.PARAM}
 _SIZES = (0.7, 3.1, 0.23, 11.0, 1.9, 41.0)  # of the variables, by sample; every other sample has none below 0
 _ENOUGH = 3  # samples with finite entries
 _ROUNDING = 1e-12
@@ -39,7 +40,8 @@ def singular_values(rows: Rows) -> list[float]:
     columns = [list(column) for column in zip(*rows, strict=True)]
     pairs = [(i, j) for j in range(len(columns)) for i in range(j)]
     for _ in range(40):
-        if not any([_rotated(columns[i], columns[j]) for i, j in pairs]):
+        rotated = [_rotated(columns[i], columns[j]) for i, j in pairs]
+        if not any(rotated):
             break
     return sorted(math.hypot(*column) for column in columns)
 
@@ -48,7 +50,7 @@ def _rotated(a: list[float], b: list[float]) -> bool:
     """Make two columns orthogonal; False where they are."""
     off = _dot(a, b)
     sizes = math.hypot(*a) * math.hypot(*b)
-    if abs(off) <= 1e-16 * sizes or sizes == 0.0:
+    if abs(off) <= 1e-15 * sizes or sizes == 0.0:
         return False
     ratio = (_dot(b, b) - _dot(a, a)) / (2.0 * off)
     tangent = math.copysign(1.0, ratio) / (abs(ratio) + math.hypot(1.0, ratio))
@@ -87,7 +89,7 @@ def _samples(matrix: Matrix, dimension: int) -> Iterator[Rows]:
     """The linear part: itself, or at some choices of the params (none where too few are defined)."""
     rows = _linear(matrix, dimension)
     entries = [e for row in rows for e in row]
-    if all([e.is_constant for e in entries]):
+    if all(e.is_constant for e in entries):
         yield [[e.number for e in row] for row in rows]
         return
     order = list(topological(entries, lambda node: () if node.op in _FREE else node.args))
@@ -121,11 +123,9 @@ def _are_orthogonal(rows: Rows) -> bool:
     """Whether the columns are at right angles, to rounding."""
     columns = list(zip(*rows, strict=True))
     return all(
-        [
-            abs(_dot(a, b)) <= _ROUNDING * math.hypot(*a) * math.hypot(*b)
-            for j, b in enumerate(columns)
-            for a in columns[:j]
-        ]
+        abs(_dot(a, b)) <= _ROUNDING * math.hypot(*a) * math.hypot(*b)
+        for j, b in enumerate(columns)
+        for a in columns[:j]
     )
 
 
@@ -136,15 +136,15 @@ def _stretch(matrix: Matrix, dimension: int, is_largest: bool) -> Expr:
     graph = matrix.offset[0].graph
     samples = list(_samples(matrix, dimension))
     rows = _linear(matrix, dimension)
-    is_constant = all([e.is_constant for row in rows for e in row])
-    if samples and all([_is_similar(s) for s in samples]):
+    is_constant = all(e.is_constant for row in rows for e in row)
+    if samples and all(_is_similar(s) for s in samples):
         return _length_of_all(rows, samples)
     if is_constant:
         value = singular_values(samples[0])[-1 if is_largest else 0]
         return graph.constant(value * (1 + _MARGIN if is_largest else 1 - _MARGIN))
-    if samples and all([_are_orthogonal(s) for s in samples]):
+    if samples and all(_are_orthogonal(s) for s in samples):
         return _extreme([_length([row[j] for row in rows]) for j in range(dimension)], is_largest)
-    if samples and all([_are_orthogonal(_transposed(s)) for s in samples]):
+    if samples and all(_are_orthogonal(_transposed(s)) for s in samples):
         return _extreme([_length(row) for row in rows], is_largest)
     norm = _norm([e for row in rows for e in row])
     if is_largest:

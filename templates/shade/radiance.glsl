@@ -60,7 +60,7 @@ vec4 radiance() {
         light += 1;
 {% if lights %}
         // shadow rays start clear of the surface by more than it may be wrong (Keinert 2014, section 3.3)
-        o = p + max({{ lift }}, 4.0 * tolerance(0.0)) * normal;
+        o = p + max({{ lift }}, 4.0 * tolerance(0.0)) / clamp(length(s.field.xyz), 0.05, 1.0) * normal;
         light_at(light, o, toward, limit, irradiance);
         d = toward;
         start = 0.0;

@@ -1,10 +1,10 @@
 // requires: events or march (generated)
-// provides: trace
+// provides: trace, the first hit at or after `start` and before `limit`, or FAR
 float trace(vec3 o, vec3 d, float start, float limit) {
-    float first = limit;
 {% if trace.events %}
-    float event = events(o, d, start);
-    first = event < limit ? event : FAR;
+    float first = events(o, d, start);
+{% else %}
+    float first = FAR;
 {% endif %}
 {% if trace.march %}
     first = min(first, march(o, d, start, min(first, limit)));

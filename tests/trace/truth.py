@@ -17,11 +17,10 @@ from sdfc.field.numeric import Evaluator
 from sdfc.gpu.frame import Frame
 from sdfc.gpu.program import FragmentProgram
 from sdfc.pipeline import Compiled, Options
-from sdfc.plan.plan import SMALLEST_TOLERANCE
+from sdfc.plan.plan import FINE, SMALLEST_TOLERANCE
 from sdfc.reference.certify import Certificate, first_roots
 from sdfc.reference.compare import Comparison, compare
 from sdfc.shape.lower import lower
-from sdfc.tracers import TRACERS
 
 Array: TypeAlias = NDArray[np.float64]
 Mask: TypeAlias = NDArray[np.bool_]
@@ -128,7 +127,7 @@ def footprint(compiled: Compiled, size: tuple[int, int], view: View = View()) ->
 def tolerance(compiled: Compiled, picture: Picture, cone: tuple[float, float]) -> float:
     """Twice what the tracer takes for touching at the far side of the scene (ALGORITHMS: contested is within 2 eps)."""
     reach = float(np.linalg.norm(picture.o, axis=0).max()) + 1.0
-    return 2.0 * max(SMALLEST_TOLERANCE, TRACERS["proven"].tolerance * (cone[0] + cone[1] * reach))
+    return 2.0 * max(SMALLEST_TOLERANCE, FINE * (cone[0] + cone[1] * reach))
 
 
 def certified(compiled: Compiled, picture: Picture, near: float, end: float | None = None) -> Certificate:
