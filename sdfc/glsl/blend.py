@@ -1,4 +1,4 @@
-"""Smooth unions of convex functions: stepped by the blend of their tangents, which is concave and below the field."""
+"""Smooth unions: stepped by the blend of lines below their operands, which is concave and below the field."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from sdfc.glsl.body import Body, own_point
 from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Call, Functions, Role
 from sdfc.glsl.live import Live
-from sdfc.plan.steps import Blend, BlendNode, BlendTree, BlendUnion, Part, Tangent
+from sdfc.plan.steps import Blend, BlendLeaf, BlendNode, BlendTree, BlendUnion, Falling, Part, Tangent
 
 
 class BlendWriter:
-    """Writes a function for each blend: its value where each leaf is replaced by its tangent, `tau` further on."""
+    """Writes a function for each blend: its value where each operand is replaced by its line, `tau` further on."""
 
     def __init__(self, graph: FieldGraph, functions: Functions, live: Live) -> None:
         self._graph = graph
@@ -27,17 +27,17 @@ class BlendWriter:
         text = body.call(self._functions.of_part(part, role), [q, body.text(direction)])
         return text if _is_one(part.stretch) else f"{body.text(part.stretch)} * {text}"
 
-    def parts_of(self, blend: Blend) -> list[Part]:
-        return list(dict.fromkeys(_parts(blend.tree)))
+    def convex_parts_of(self, blend: Blend) -> list[Part]:
+        """The parts whose slope along the ray is asked for."""
+        return [leaf.part for leaf in _leaves(blend.tree) if isinstance(leaf, Tangent)]
 
     def next(self, body: Body, blend: Blend, directions: dict[int, Expr], cut: bool) -> str:
         name = blend.part.name
-        parts = self.parts_of(blend)
+        leaves = _leaves(blend.tree)
+        parts = [leaf.part for leaf in leaves]
         self._function(blend, parts)
-        for part in parts:
-            body.add(
-                f"vec2 v_{part.name} = {self.slope(body, part, directions[id(part)], Role.DISTANCE_SLOPE)};", part.span
-            )
+        for leaf in leaves:
+            body.add(f"vec2 v_{leaf.part.name} = {self._line(body, leaf, directions)};", leaf.part.span)
         arguments = ", ".join(f"v_{part.name}" for part in parts)
         body.add(f"float v_{name} = {name}_ahead(0.0, {arguments});", blend.part.span)
         sunk = "3.0 * fine" if cut else "0.0"
@@ -46,6 +46,19 @@ class BlendWriter:
         step = f"max(left_{name}, {least} * v_{name})" if blend.lipschitz != 1.0 else f"max(left_{name}, v_{name})"
         value = f"v_{name} + {sunk}" if cut else f"v_{name}"
         return f"ball(t, {value} <= fine ? {value} : {step}, fine)"
+
+    def _line(self, body: Body, leaf: BlendLeaf, directions: dict[int, Expr]) -> str:
+        match leaf:
+            case Tangent():
+                return self.slope(body, leaf.part, directions[id(leaf.part)], Role.DISTANCE_SLOPE)
+            case Falling():
+                part = leaf.part
+                q = body.point(own_point(part.inverse, self._graph.input("p")), f"q_{part.name}")
+                text = body.call(self._functions.of_part(part, Role.VALUE), [q])
+                text = text if _is_one(part.stretch) else f"{body.text(part.stretch)} * {text}"
+                return f"vec2({'' if leaf.inside else '-'}{text}, {literal(-leaf.lipschitz)})"
+            case _:
+                assert_never(leaf)
 
     def _function(self, blend: Blend, parts: list[Part]) -> None:
         name = blend.part.name
@@ -56,13 +69,13 @@ class BlendWriter:
             body.add(f"float {part.name} = v_{part.name}.x + tau * v_{part.name}.y;")
         body.add(f"return {self._tree(blend.tree, body)};")
         head = f"float {name}_ahead(float tau, {formal}) {{"
-        doc = "// the blend of the tangents, tau ahead: concave in tau, and never above the field"
+        doc = "// the blend of the operands' lines, tau ahead: concave in tau, and never above the field"
         self.texts.append("\n".join([doc, head, *body.lines, "}", ""]))
         self.texts.append(_CLEAR.format(name=name, formal=formal, actual=actual))
 
     def _tree(self, tree: BlendTree, body: Body) -> str:
         match tree:
-            case Tangent():
+            case Tangent() | Falling():
                 return tree.part.name
             case BlendUnion():
                 names = [self._tree(t, body) for t in tree.operands]
@@ -82,7 +95,7 @@ class BlendWriter:
 
 # Two bounds close in on the root of the concave function: a chord crosses before it, the line through two points on
 # the left crosses after it. The left one is proven, and is the step.
-_CLEAR = """// how far ahead the blend of the tangents stays above `level`
+_CLEAR = """// how far ahead the blend of the operands' lines stays above `level`
 float {name}_clear(float value, float level, {formal}) {{
     float left = 0.0, left_value = value - level;
     float right = left_value * 4.0 + 1.0, right_value = {name}_ahead(right, {actual}) - level;
@@ -103,16 +116,22 @@ float {name}_clear(float value, float level, {formal}) {{
 """
 
 
-def _parts(tree: BlendTree) -> list[Part]:
-    match tree:
-        case Tangent():
-            return [tree.part]
-        case BlendUnion():
-            return [part for operand in tree.operands for part in _parts(operand)]
-        case BlendNode():
-            return _parts(tree.first) + _parts(tree.second)
-        case _:
-            assert_never(tree)
+def _leaves(tree: BlendTree) -> list[BlendLeaf]:
+    """The operands, in order, each part once."""
+    found: dict[int, BlendLeaf] = {}
+    stack = [tree]
+    while stack:
+        node = stack.pop()
+        match node:
+            case BlendUnion():
+                stack.extend(reversed(node.operands))
+            case BlendNode():
+                stack.extend((node.second, node.first))
+            case Tangent() | Falling():
+                found.setdefault(id(node.part), node)
+            case _:
+                assert_never(node)
+    return list(found.values())
 
 
 def _is_one(value: Expr) -> bool:

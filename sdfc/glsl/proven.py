@@ -190,7 +190,7 @@ class ProvenWriter:
                 case Tangent(part=part) | Chord(part=part):
                     parts = [part]
                 case Blend():
-                    parts = self._blends.parts_of(leaf)
+                    parts = self._blends.convex_parts_of(leaf)
                 case _:
                     parts = []
             for part in parts:

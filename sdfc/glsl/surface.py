@@ -23,6 +23,7 @@ from sdfc.plan.steps import (
     BlendUnion,
     Chord,
     Closed,
+    Falling,
     Many,
     Part,
     Step,
@@ -212,6 +213,8 @@ class SurfaceWriter:
         match tree:
             case Tangent():
                 return self._leaf(tree.part, body, True, Role.DISTANCE_SURFACE)
+            case Falling():
+                return self._leaf(tree.part, body, tree.inside, Role.DISTANCE_SURFACE)
             case BlendUnion():
                 texts = [self._blend(t, body) for t in tree.operands]
                 result = texts[0]

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from sdfc.diagnostics import Diagnostic, InternalError, Source, Span
 from sdfc.field.graph import Expr, FieldGraph
 from sdfc.openscad import space
+from sdfc.openscad.fields import field
 from sdfc.openscad.polytope import Plane
 from sdfc.openscad.refusal import RefusalError
 from sdfc.openscad.space import Map3, Point
 from sdfc.scene.library import Library
-from sdfc.shape.definition import Argument
+from sdfc.shape.definition import Argument, Definition
 from sdfc.shape.graph import Affine, Shape, ShapeGraph
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
@@ -29,17 +31,16 @@ class Context:
     values: FieldGraph
     shapes: ShapeGraph
     library: Library
-    warnings: list[Diagnostic] = field(default_factory=list)
-    materials: dict[tuple[float, ...], Material] = field(default_factory=dict)
+    warnings: list[Diagnostic] = dataclasses.field(default_factory=list)
+    materials: dict[tuple[float, ...], Material] = dataclasses.field(default_factory=dict)
+    own_fields: dict[str, Definition] = dataclasses.field(default_factory=dict)
 
     def warn(self, message: str, span: Span, hint: str | None = None) -> None:
         self.warnings.append(Diagnostic(message, span, hint, "warning"))
 
     def apply(self, name: str, span: Span, *children: Shape, **arguments: Argument) -> Shape:
-        """A standard definition; parameters that are not given have their defaults."""
-        definition = self.library.definition(name)
-        if definition is None:
-            raise InternalError(f"the standard library has no '{name}'")
+        """A standard definition, or one of fields.py; parameters that are not given have their defaults."""
+        definition = self._definition(name)
         environment: dict[str, Argument] = {}
         for parameter in definition.values:
             given = arguments.pop(parameter.name, None)
@@ -51,6 +52,16 @@ class Context:
         if arguments:
             raise InternalError(f"'{name}' has no '{next(iter(arguments))}'")
         return self.shapes.apply(definition, environment.values(), children, span)
+
+    def _definition(self, name: str) -> Definition:
+        """One object for one name."""
+        made = self.library.definition(name) or self.own_fields.get(name)
+        if made is None:
+            made = field(name, self.values)
+            if made is None:
+                raise InternalError(f"there is no field '{name}'")
+            self.own_fields[name] = made
+        return made
 
     def number(self, value: float) -> Expr:
         return self.values.constant(value)

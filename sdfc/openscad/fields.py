@@ -43,7 +43,7 @@ field faceted_cone(sides: count >= 3, bottom: length >= 0, top: length >= 0, hei
 
 def lifted(across, along) = min(max(across, along), 0) + length(max([across, along], 0))
 
-def unstretched(v, stretch, growth) = 2 * v / (stretch + sqrt(stretch * stretch + 4 * growth * abs(v)))
+def unstretched(v, stretch, growth) = 2 * v / (stretch + sqrt(stretch * stretch + 2 * growth * abs(v)))
 
 def sheared(c) = c / 2 + sqrt(1 + c * c / 4)
 

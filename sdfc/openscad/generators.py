@@ -34,6 +34,14 @@ class Spanned:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Faceted:
+    """A round solid of few pieces: its corners, and the curve that they stand for."""
+
+    corners: Callable[[], Sequence[Generator]] = field(repr=False)
+    curve: Callable[[], Sequence[Generator]] = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Mapped:
     """Each generator of the child replaced by its image."""
 
@@ -46,7 +54,7 @@ class Together:
     children: tuple[Span3, ...] = field(repr=False)
 
 
-Span3: TypeAlias = Spanned | Mapped | Together
+Span3: TypeAlias = Spanned | Faceted | Mapped | Together
 
 
 def refused(message: str) -> Spanned:
@@ -58,8 +66,8 @@ def refused(message: str) -> Spanned:
     return Spanned(make)
 
 
-def generators(root: Span3) -> list[Generator]:
-    """All of them, in order, each once. Iterative: depth is no limit."""
+def generators(root: Span3, as_curves: bool = False) -> list[Generator]:
+    """All of them, in order, each once; what has few pieces by its corners or as a curve. Iterative."""
     results: list[list[Generator]] = []
     stack: list[tuple[Span3, bool]] = [(root, False)]
     while stack:
@@ -67,6 +75,8 @@ def generators(root: Span3) -> list[Generator]:
         match node:
             case Spanned():
                 results.append(list(node.make()))
+            case Faceted():
+                results.append(list(node.curve() if as_curves else node.corners()))
             case Mapped() if expanded:
                 results.append([image for g in results.pop() for image in node.image(g)])
             case Mapped():

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from itertools import pairwise
 
 from sdfc.openscad import outline, plane, polytope, rounded
@@ -21,6 +22,7 @@ from sdfc.shape.graph import Shape
 
 NEAR = 1e-5  # of the extent: a .csg file has six digits
 MOST_SUMS = 200_000
+MOST_FACES = 96  # of a hull of balls or cylinders of few pieces; one with more is shown with true curves
 GENERAL = "`hull` is exact here for points and balls, for discs in two parallel planes, and for discs around one axis"
 
 
@@ -34,7 +36,9 @@ def hull(m: Invocation) -> Part | None:
     flats = [p.plane for p in parts if isinstance(p, Flat)]
     if flats:
         return _flat_hull([d for f in flats for d in plane.spanning_discs(f)])
-    return spanned(m, [g for p in parts if isinstance(p, Solid) for g in generators(p.hull)])
+    return _spanned(
+        m, lambda as_curves: [g for p in parts if isinstance(p, Solid) for g in generators(p.hull, as_curves)]
+    )
 
 
 def _flat_hull(discs: list[tuple[Point2, float]]) -> Flat | None:
@@ -42,15 +46,27 @@ def _flat_hull(discs: list[tuple[Point2, float]]) -> Flat | None:
     return None if made is None else Flat(made, is_convex=True)
 
 
-def spanned(m: Invocation, spans: Sequence[Generator]) -> Solid | None:
-    """The solid hull of points, balls and discs; None where it is flat."""
-    kept = list(dict.fromkeys(spans))
-    if not any(g.radius for g in kept):
-        made = polytope.hull([g.center for g in kept])
+def _spanned(m: Invocation, spans: Callable[[bool], list[Generator]]) -> Solid | None:
+    """The hull of `spans(as_curves)`: with the pieces that the file asks for, unless these make too many faces."""
+    corners = list(dict.fromkeys(spans(False)))
+    if not any(g.radius for g in corners):
+        made = polytope.hull([g.center for g in corners])
         if made is None:
             return None
+        curves = spans(True)
+        if len(made.planes) > MOST_FACES and any(g.radius for g in curves):
+            with suppress(RefusalError):
+                curved = _rounded(m, curves)
+                m.context.warn(f"`{m.call.name}` of {len(made.planes)} faces: shown with true curves instead", m.span)
+                return curved
         shape = m.context.polytope(made.corners, made.planes, m.span)
         return Solid(shape, points_hull(made.corners), is_convex=True)
+    return _rounded(m, corners)
+
+
+def _rounded(m: Invocation, spans: Sequence[Generator]) -> Solid | None:
+    """The solid hull of points, balls and discs; None where it is flat."""
+    kept = list(dict.fromkeys(spans))
     discs = [g for g in kept if g.axis is not None]
     form = _of_discs(m, kept, discs[0].axis) if discs and discs[0].axis else rounded.solid(m.context, kept, m.span)
     return None if form is None else Solid(form, Spanned(lambda: kept), is_convex=True)
@@ -136,14 +152,16 @@ def minkowski(m: Invocation) -> Part | None:
         raise RefusalError("`minkowski` of what is not convex has no distance form", "it is exact for convex children")
     if isinstance(parts[0], Flat):
         return _flat_hull(_flat_sums([plane.spanning_discs(p.plane) for p in parts if isinstance(p, Flat)]))
-    total = [Generator((0.0, 0.0, 0.0))]
-    for part in parts:
-        if isinstance(part, Solid):
-            spans = generators(part.hull)
-            if len(total) * len(spans) > MOST_SUMS:
-                raise RefusalError("this `minkowski` has too many corners")
-            total = [_sum(a, b) for a in total for b in spans]
-    return spanned(m, total)
+    return _spanned(m, lambda as_curves: _sums([generators(p.hull, as_curves) for p in parts if isinstance(p, Solid)]))
+
+
+def _sums(terms: Sequence[list[Generator]]) -> list[Generator]:
+    total = terms[0]
+    for term in terms[1:]:
+        if len(total) * len(term) > MOST_SUMS:
+            raise RefusalError("this `minkowski` has too many corners")
+        total = [_sum(a, b) for a in total for b in term]
+    return total
 
 
 def _flat_sums(terms: Sequence[list[tuple[Point2, float]]]) -> list[tuple[Point2, float]]:

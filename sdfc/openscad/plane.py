@@ -304,6 +304,20 @@ def extent(root: Plane) -> tuple[Point2, Point2] | None:
     return fold(root, box)
 
 
+def farthest(root: Plane) -> float:
+    """How far from the origin its polygons and discs go, those that are taken away too."""
+
+    def reach(node: Plane, _: int, parts: list[float]) -> float:
+        box = extent(node) if not parts else None
+        return (
+            max(parts)
+            if box is None
+            else max(math.hypot(x, y) for x in (box[0][0], box[1][0]) for y in (box[0][1], box[1][1]))
+        )
+
+    return fold(root, reach)
+
+
 def is_tight(root: Plane) -> bool:
     """Whether `extent` is the smallest box."""
     return fold(root, lambda node, _, parts: all(parts) and not isinstance(node, Common | Outside))

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from itertools import pairwise
 
-from sdfc.openscad import polytope
-from sdfc.openscad.generators import Generator, Spanned
+from sdfc.openscad import polytope, space
+from sdfc.openscad.generators import Faceted, Generator, Spanned
 from sdfc.openscad.invocation import Invocation
 from sdfc.openscad.part import Solid
 from sdfc.openscad.polytope import Plane
@@ -16,6 +16,7 @@ from sdfc.openscad.space import Point
 
 Z: Point = (0.0, 0.0, 1.0)
 Ring = tuple[float, float]  # radius and height of a ring of corners
+MOST_PLANES = 12  # faces around a cylinder that each become a plane; with more of them one is folded onto the others
 SMALLEST = 1e-12  # a size below this is nothing
 FLAT = 1e-5  # of the extent: how far a corner may be off a plane and count as on it (a .csg file has six digits)
 
@@ -26,7 +27,7 @@ def is_size(*values: float) -> bool:
 
 
 def points_hull(corners: Sequence[Point]) -> Spanned:
-    return Spanned(lambda: [Generator(p) for p in corners])
+    return Spanned(lambda: _points(corners))
 
 
 def cube(m: Invocation) -> Solid | None:
@@ -48,9 +49,27 @@ def sphere(m: Invocation) -> Solid | None:
     if facets is None:
         shape = m.context.apply("sphere", m.span, radius=m.context.number(radius))
         return Solid(shape, Spanned(lambda: [Generator((0.0, 0.0, 0.0), radius)]), is_convex=True)
-    rings = (facets + 1) // 2
-    angles = [math.pi * (i + 0.5) / rings for i in range(rings)]
-    return faceted(m, [(radius * math.sin(a), -radius * math.cos(a)) for a in angles], facets)
+    return _faceted_ball(m, radius, facets)
+
+
+def _faceted_ball(m: Invocation, radius: float, facets: int) -> Solid:
+    """OpenSCAD's rings, none at the poles. Only the upper half's faces are needed: the lower one mirrors it."""
+    count = (facets + 1) // 2
+    angles = [math.pi * (i + 0.5) / count for i in range(count)]
+    rings = [(radius * math.sin(a), -radius * math.cos(a)) for a in angles]
+    context = m.context
+    faces = [_slope(low, high, facets) for low, high in pairwise(rings) if low[1] + high[1] > -SMALLEST]
+    shape = context.apply(
+        "faceted_ball",
+        m.span,
+        sides=context.number(facets),
+        normals=tuple(context.vector(normal) for normal, _ in faces),
+        offsets=tuple(context.number(offset) for _, offset in faces),
+        radius=context.number(max(r for r, _ in rings)),
+        height=context.number(rings[-1][1]),
+    )
+    curve = [Generator((0.0, 0.0, 0.0), radius)]
+    return Solid(shape, Faceted(lambda: _points(ring_corners(rings, facets)), lambda: curve), is_convex=True)
 
 
 def cylinder(m: Invocation) -> Solid | None:
@@ -60,26 +79,30 @@ def cylinder(m: Invocation) -> Solid | None:
         return None
     low = -0.5 * height if m.flag("center") else 0.0
     facets = m.facets()
-    if facets is not None:
-        return faceted(m, [(bottom, low), (top, low + height)], facets)
     context = m.context
-    upright = height * 0.5 + low
+    ends = ((bottom, low), (top, low + height))
+    discs = [Generator((0.0, 0.0, z), r, Z if r else None) for r, z in ends]
+    if facets is not None:
+        corners = ring_corners(ends, facets)
+        if facets <= MOST_PLANES:
+            shape = context.polytope(corners, ring_planes(ends, facets), m.span)
+        else:
+            sizes = {"sides": facets, "bottom": bottom, "top": top, "height": height}
+            shape = context.apply("faceted_cone", m.span, **{name: context.number(v) for name, v in sizes.items()})
+            shape = context.moved(space.translation((0.0, 0.0, low + 0.5 * height)), shape, m.span)
+        return Solid(shape, Faceted(lambda: _points(corners), lambda: discs), is_convex=True)
     if bottom == top:
         shape = context.apply("cylinder", m.span, radius=context.number(bottom), height=context.number(height))
     elif top == 0.0:
         shape = context.apply("cone", m.span, radius=context.number(bottom), height=context.number(height))
     else:
-        numbers = {"bottom": bottom, "top": top, "height": height}
-        shape = context.apply("capped_cone", m.span, **{name: context.number(v) for name, v in numbers.items()})
-    discs = [Generator((0.0, 0.0, z), r, Z if r else None) for r, z in ((bottom, low), (top, low + height))]
-    return Solid(context.raised(shape, upright, m.span), Spanned(lambda: discs), is_convex=True)
+        sizes = {"bottom": bottom, "top": top, "height": height}
+        shape = context.apply("capped_cone", m.span, **{name: context.number(v) for name, v in sizes.items()})
+    return Solid(context.raised(shape, low + 0.5 * height, m.span), Spanned(lambda: discs), is_convex=True)
 
 
-def faceted(m: Invocation, rings: Sequence[Ring], facets: int) -> Solid:
-    """The convex solid of rings of corners, from the lowest up, each ring with its first corner at angle 0."""
-    corners = ring_corners(rings, facets)
-    shape = m.context.polytope(corners, ring_planes(rings, facets), m.span)
-    return Solid(shape, points_hull(corners), is_convex=True)
+def _points(corners: Sequence[Point]) -> list[Generator]:
+    return [Generator(p) for p in corners]
 
 
 def ring_corners(rings: Sequence[Ring], facets: int) -> list[Point]:
@@ -88,19 +111,20 @@ def ring_corners(rings: Sequence[Ring], facets: int) -> list[Point]:
     return made
 
 
-def ring_planes(rings: Sequence[Ring], facets: int) -> list[Plane]:
-    """The faces between rings, without the lowest and the highest. A face is flat: its middle is at r cos(pi / n)."""
+def _slope(low: Ring, high: Ring, facets: int) -> tuple[tuple[float, float], float]:
+    """The face between two rings, in the plane of its middle: normal (outward, up) and offset."""
     apothem = math.cos(math.pi / facets)
-    planes = []
-    for (r, z), (s, top) in pairwise(rings):
-        across, up = top - z, apothem * (r - s)
-        length = math.hypot(across, up)
-        across, up = across / length, up / length
-        offset = across * apothem * r + up * z
-        for i in range(facets):
-            angle = math.tau * (i + 0.5) / facets
-            planes.append(((across * math.cos(angle), across * math.sin(angle), up), offset))
-    return planes
+    across, up = high[1] - low[1], apothem * (low[0] - high[0])
+    length = math.hypot(across, up)
+    across, up = across / length, up / length
+    return (across, up), across * apothem * low[0] + up * low[1]
+
+
+def ring_planes(ends: tuple[Ring, Ring], facets: int) -> list[Plane]:
+    """The faces between two rings, without the horizontal ones."""
+    (across, up), offset = _slope(*ends, facets)
+    angles = [math.tau * (i + 0.5) / facets for i in range(facets)]
+    return [((across * math.cos(a), across * math.sin(a), up), offset) for a in angles]
 
 
 def polyhedron(m: Invocation) -> Solid | None:

@@ -13,7 +13,6 @@ from sdfc.openscad.invocation import Invocation
 from sdfc.openscad.lathe import Lathe
 from sdfc.openscad.part import Solid
 from sdfc.openscad.plane import Plane
-from sdfc.openscad.profile import profile
 from sdfc.openscad.refusal import RefusalError
 from sdfc.openscad.solids import Z, is_size
 from sdfc.openscad.tower import Tower
@@ -32,7 +31,7 @@ def linear_extrude(m: Invocation) -> Solid | None:
     root = plane.joined(flats)
     tower = Tower(m.context, m.span, low, low + height, scale[0], scale[1])
     if twist:
-        shape = tower.twisted(profile(m.context, root, m.span), twist)
+        shape = tower.twisted(root, twist)
         return Solid(shape, refused("the hull of a twisted extrusion has no exact form"), is_convex=False)
     is_convex = len(flats) == 1 and all(c.is_convex for c in m.parts())
     shape = plane.fold(root, tower.solid)

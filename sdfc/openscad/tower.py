@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import assert_never
 
 from sdfc.diagnostics import Span
-from sdfc.openscad import outline
-from sdfc.openscad.context import Y_TO_Z, Context
+from sdfc.openscad import outline, plane, space
+from sdfc.openscad.context import Context
 from sdfc.openscad.outline import Edge, Pocketed, Point2
 from sdfc.openscad.plane import Common, Disc, Joined, Outside, Plane, Polygon, Stroke
 from sdfc.openscad.polytope import Plane as Plane3
@@ -143,30 +143,31 @@ class Tower:
 
     def _as_it_is(self, leaf: Polygon | Stroke, reach: Reach) -> Shape:
         """The distance in the plane, extruded: exact, but without a closed form for rays."""
+        flat = profile(self.context, leaf, self.span)
         if (self.x, self.y) != (1.0, 1.0):
-            raise RefusalError("the scaled extrusion of this has no exact form", "its sides cross, or it was offset")
-        context = self.context
-        flat = profile(context, leaf, self.span)
-        shape = context.apply("extrude", self.span, flat, height=context.number(reach.high - reach.low))
+            return self._turned(flat, leaf, 0.0, reach)
+        height = self.context.number(reach.high - reach.low)
+        shape = self.context.apply("extrude", self.span, flat, height=height)
         middle = 0.5 * (reach.low + reach.high)
-        return context.moved(((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, middle)), shape, self.span)
+        return self.context.moved(space.translation((0.0, 0.0, middle)), shape, self.span)
 
-    def twisted(self, flat: Shape, twist: float) -> Shape:
+    def twisted(self, root: Plane, twist: float) -> Shape:
         """Turned by `twist` (radians, clockwise) on the way up, as a smooth helix."""
+        flat = profile(self.context, root, self.span)
+        return self._turned(flat, root, twist, self._reach(beyond=False))
+
+    def _turned(self, flat: Shape, root: Plane, twist: float, reach: Reach) -> Shape:
+        """Turned and scaled on the way. The field's scale begins with 1 at the lowest point."""
         context, span = self.context, self.span
-        height = context.number(self.height)
-        rate = context.number(twist / self.height)
-        shape = context.apply("extrude_twisted", span, flat, height=height, rate=rate)
-        if self.x != self.y or self.x == 0.0:
-            raise RefusalError(
-                "a twisted extrusion with this scale has no exact form", "one scale above 0 for x and y has"
-            )
-        if self.x != 1.0:
-            lying = context.moved(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0)), shape, span)
-            bottom, top = context.number(1.0), context.number(self.x)
-            shape = context.moved(
-                Y_TO_Z, context.apply("taper", span, lying, bottom=bottom, top=top, height=height), span
-            )
-        c, s = math.cos(0.5 * twist), math.sin(0.5 * twist)
-        middle = 0.5 * (self.low + self.high)
-        return context.moved(((c, s, 0, 0), (-s, c, 0, 0), (0, 0, 1, middle)), shape, span)
+        if self.x != self.y:
+            raise RefusalError("this extrusion has no exact form", UNEVEN)
+        first = reach.low_scale
+        numbers = {"height": reach.high - reach.low, "rate": twist / self.height}
+        if self.x == 1.0:
+            shape = context.apply("extrude_twisted", span, flat, **{n: context.number(v) for n, v in numbers.items()})
+        else:
+            numbers |= {"top": reach.high_scale / first, "reach": plane.farthest(root)}
+            shape = context.apply("tapered_extrusion", span, flat, **{n: context.number(v) for n, v in numbers.items()})
+        c, s = first * math.cos(0.5 * twist), first * math.sin(0.5 * twist)
+        middle = 0.5 * (reach.low + reach.high)
+        return context.moved(((c, s, 0.0, 0.0), (-s, c, 0.0, 0.0), (0.0, 0.0, 1.0, middle)), shape, span)

@@ -38,7 +38,8 @@ def prune(root: Shape, graph: ShapeGraph, bounds: Bounds) -> Shape:
     two parts are blended that are out of each other's reach. The zero set is the same; values inside may be smaller,
     and values far outside larger. What other operations are applied to is left alone: they may look at any value."""
     pruner = _Pruner(graph, bounds)
-    return descend(root, _Reach(0.0, 0), pruner.below, pruner.make)
+    start: _Reach | None = _Reach(0.0, 0)
+    return descend(root, start, pruner.below, pruner.make)
 
 
 class _Pruner:
@@ -88,7 +89,12 @@ class _Pruner:
                 return kept
 
     def _joined(self, parts: list[Shape], shape: Union | Intersection) -> Shape:
-        return parts[0] if len(parts) == 1 else self._graph.with_children(shape, tuple(parts))
+        if len(parts) == len(shape.children):
+            return shape
+        if len(parts) == 1:
+            return parts[0]
+        combine = self._graph.union if isinstance(shape, Union) else self._graph.intersection
+        return combine(parts, shape.span)
 
     def _subtracted(self, shape: Intersection, reach: _Reach) -> list[Shape]:
         """The parts, without what is subtracted out of reach; one of them at least."""

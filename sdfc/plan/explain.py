@@ -51,7 +51,7 @@ def _tree(step: Step, depth: int) -> list[str]:
             reason = f"Lipschitz balls, constant {step.lipschitz:.4g}: curvature unknown"
             return [f"{pad}{side}{step.part.name} ({step.part.span}): {reason}"]
         case Blend():
-            reason = "the blend of its parts' tangents, which is concave and below it"
+            reason = "the blend of lines below its operands (tangents, where they are convex), which is concave"
             return [f"{pad}{step.part.name} ({step.part.span}): {reason}"]
         case _:
             assert_never(step)

@@ -24,6 +24,7 @@ from sdfc.plan.steps import (
     BlendUnion,
     Chord,
     Closed,
+    Falling,
     Part,
     Step,
     Tangent,
@@ -166,8 +167,15 @@ class Prover:
         return claims.convex if shape.definition.is_primitive else shape.id in self._convex
 
     def _blend_tree(self, leaf: Leaf) -> BlendTree | None:
-        """The operands of a smooth union, where all are convex functions in the scene's own space."""
-        return self._blend_of(leaf.shape, leaf) if leaf.affine is None else None
+        """The operands of a smooth union in the scene's own space, or None where it is not one of leaves and unions."""
+        if leaf.affine is not None or not self._is_blend(leaf.shape):
+            return None
+        return self._blend_of(leaf.shape, leaf)
+
+    def _is_blend(self, shape: Apply) -> bool:
+        claims = shape.definition.claims
+        smooth = claims.lowering is not None and claims.dual is not None and len(shape.children) == 2
+        return smooth and shape.definition.name.startswith("smooth_union")
 
     def _blend_of(self, shape: Shape, whole: Leaf) -> BlendTree | None:
         leaf = unwrapped(shape)
@@ -179,17 +187,13 @@ class Prover:
                     return BlendUnion(tuple(found)) if len(found) == len(operands) else None
                 case _:
                     return None
-        if not leaf.inside:
-            return None
-        if leaf.shape.id in self._convex:  # the formula itself: the blend is of formulas, not of gauges
+        if leaf.inside and leaf.shape.id in self._convex:  # the formula: the blend is of formulas, not of gauges
             return Tangent(self.part(leaf))
-        claims = leaf.shape.definition.claims
-        if claims.lowering is None or claims.dual is None or leaf.affine is not None or len(leaf.shape.children) != 2:
-            return None
-        if not leaf.shape.definition.name.startswith("smooth_union"):
-            return None
-        first, second = (self._blend_of(c, whole) for c in leaf.shape.children)
-        return None if first is None or second is None else BlendNode(leaf.shape, first, second)
+        if leaf.inside and leaf.affine is None and self._is_blend(leaf.shape):
+            first, second = (self._blend_of(c, whole) for c in leaf.shape.children)
+            return None if first is None or second is None else BlendNode(leaf.shape, first, second)
+        box = self._bounds.box(whole.placed)
+        return Falling(self.part(leaf), self._lipschitz.constant(leaf.placed, box), leaf.inside)
 
     def part(self, leaf: Leaf) -> Part:
         """The part of a leaf: one for all its uses in the tree, so that it is computed once."""

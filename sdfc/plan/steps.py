@@ -83,7 +83,10 @@ class Ball:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Blend:
-    """A smooth union of convex functions: the blend of their tangents is concave, and below the field."""
+    """A smooth union: the blend of lines that are below its operands is concave along the ray, and below the field.
+
+    A convex function's line is its tangent; a field that is known to be Lipschitz falls no faster than its constant.
+    """
 
     part: Part  # the whole blend
     tree: BlendTree
@@ -106,7 +109,17 @@ class BlendUnion:
     operands: tuple[BlendTree, ...]
 
 
-BlendTree: TypeAlias = Tangent | BlendNode | BlendUnion
+@dataclass(frozen=True, slots=True, eq=False)
+class Falling:
+    """An operand of a blend of which only a Lipschitz constant is known."""
+
+    part: Part
+    lipschitz: float
+    inside: bool = True
+
+
+BlendLeaf: TypeAlias = Tangent | Falling
+BlendTree: TypeAlias = BlendLeaf | BlendNode | BlendUnion
 
 
 @dataclass(frozen=True, slots=True, eq=False)

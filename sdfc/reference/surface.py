@@ -21,6 +21,7 @@ from sdfc.plan.steps import (
     BlendUnion,
     Chord,
     Closed,
+    Falling,
     Many,
     Part,
     Step,
@@ -121,6 +122,8 @@ class SurfaceFold:
         match tree:
             case Tangent():
                 return self._leaf(tree.part, p, True, formula=True)
+            case Falling():
+                return self._leaf(tree.part, p, tree.inside, formula=True)
             case BlendUnion():
                 first, *rest = (self._blend(t, p) for t in tree.operands)
                 for other in rest:

@@ -8,16 +8,16 @@ from sdfc.field.function import Function
 from sdfc.field.graph import Expr, FieldGraph, Operand, Type
 from sdfc.shade.vector import mix, polynomial, saturate
 
-CURVE = 0.32
+CURVE = 0.17
 """How fast the horizon's colour gives way to the zenith's: half way up in colour at h = CURVE / (1 + 2 CURVE)."""
 HORIZON_DEPTH = 0.34
 """The height below the horizon where the ground's colour has half come."""
 HORIZON_WIDTH = 0.15
 """The scale of the passage from horizon to ground."""
-SEAM = 0.02
+SEAM = 0.01
 """How softly the upper gradient starts at the horizon, in h: no line is seen there."""
 
-ZENITH_UNDER_COSINE = (0.3327, 0.4265, 0.0602, 0.0, 0.0319)
+ZENITH_UNDER_COSINE = (0.3687, 0.4485, 0.0461, 0.0, 0.0315)
 """The zenith's share of the mean sky under a cosine lobe whose axis has height c: a polynomial in c."""
 GROUND_UNDER_COSINE = (0.2954, -0.4207, 0.0794, 0.0, 0.0512)
 """The same for the ground's share. Both are least-squares fits of this module's weights; a test integrates them."""

@@ -26,7 +26,7 @@ _LOST = (
     (-12.016, 76.425, -123.158, 56.543),
 )
 """1 - E(c, r), what GGX of one bounce loses, is the sum of row i, column j times r^(i + 2) c^j."""
-_LOST_MEAN = (0.1594, -0.597, 3.7362, -2.7721)
+_LOST_MEAN = (0.232, -1.7301, 8.9283, -11.227, 4.3982)
 """Its mean over directions, 2 times the integral of (1 - E) c dc: the sum of entry i times r^(i + 2)."""
 _DIELECTRIC_MEAN = (0.0848, -0.002, -0.1774, 0.1146)
 """The mean reflectance of a dielectric, in powers of roughness."""

@@ -19,7 +19,7 @@ OUTSET = (
 LOWEST, HIGHEST = -12.47393, 4.026069
 """The exposures, in stops (log2 of radiance), that become black and white."""
 CURVE = (-0.00232, 0.1191, 0.4298, -6.868, 31.96, -40.14, 15.5)
-"""The film curve over the exposures scaled to 0 .. 1, in powers."""
+"""The film curve over the exposures scaled to 0 .. 1, in powers. Its end is scaled to 1: white is white."""
 EXPOSURE = 1.6
 """What radiance is multiplied with first."""
 CONTRAST = 1.5
@@ -37,7 +37,7 @@ def tone_map(graph: FieldGraph) -> Function:
     color = graph.max(graph.input("color"), 0.0)
     inset = graph.max(_transform(INSET, color * EXPOSURE), 1e-10)
     stops = graph.call(Op.LOG, inset) * (1.0 / 0.6931471805599453)
-    film = saturate(polynomial(saturate((stops - LOWEST) / (HIGHEST - LOWEST)), CURVE))
+    film = saturate(polynomial(saturate((stops - LOWEST) / (HIGHEST - LOWEST)), CURVE) / sum(CURVE))
     contrast = power(film, CONTRAST)
     look = mix(graph.constant(1.0, 1.0, 1.0) * luminance(contrast), contrast, graph.constant(SATURATION))
     display = saturate(_transform(OUTSET, look))

@@ -35,6 +35,18 @@ def largest_stretch(matrix: Matrix, dimension: int = 3) -> Expr:
     return _stretch(matrix, dimension, is_largest=True)
 
 
+def scale_of(rows: Rows) -> float | None:
+    """The factor by which a map of plain numbers stretches all directions, or None where they differ."""
+    columns = list(zip(*rows, strict=True))
+    first = columns[0]
+    square = _dot(first, first)
+    slack = _ROUNDING * square
+    for j, column in enumerate(columns[1:], 1):
+        if abs(_dot(column, column) - square) > slack or any(abs(_dot(column, c)) > slack for c in columns[:j]):
+            return None
+    return _rounded(math.sqrt(square)) if 0.0 < square < math.inf else None
+
+
 def singular_values(rows: Rows) -> list[float]:
     """Of a square matrix, smallest first, by one-sided Jacobi rotations (Hestenes 1958): small ones are right, too."""
     columns = [list(column) for column in zip(*rows, strict=True)]
@@ -114,9 +126,7 @@ def _numbers(order: Sequence[Expr], entries: Sequence[Expr], index: int) -> list
 
 
 def _is_similar(rows: Rows) -> bool:
-    """Whether the columns are orthogonal and of one length, to rounding."""
-    sizes = [math.hypot(*column) for column in zip(*rows, strict=True)]
-    return max(sizes) - min(sizes) <= _ROUNDING * max(sizes) and max(sizes) > 0.0 and _are_orthogonal(rows)
+    return scale_of(rows) is not None
 
 
 def _are_orthogonal(rows: Rows) -> bool:
@@ -134,14 +144,13 @@ def _are_orthogonal(rows: Rows) -> bool:
 
 def _stretch(matrix: Matrix, dimension: int, is_largest: bool) -> Expr:
     graph = matrix.offset[0].graph
-    samples = list(_samples(matrix, dimension))
     rows = _linear(matrix, dimension)
-    is_constant = all(e.is_constant for row in rows for e in row)
+    if all(e.is_constant for row in rows for e in row):
+        numbers = [[e.number for e in row] for row in rows]
+        return graph.constant(scale_of(numbers) or _outward(singular_values(numbers), is_largest))
+    samples = list(_samples(matrix, dimension))
     if samples and all(_is_similar(s) for s in samples):
         return _length_of_all(rows, samples)
-    if is_constant:
-        value = singular_values(samples[0])[-1 if is_largest else 0]
-        return graph.constant(value * (1 + _MARGIN if is_largest else 1 - _MARGIN))
     if samples and all(_are_orthogonal(s) for s in samples):
         return _extreme([_length([row[j] for row in rows]) for j in range(dimension)], is_largest)
     if samples and all(_are_orthogonal(_transposed(s)) for s in samples):
@@ -157,6 +166,10 @@ def _stretch(matrix: Matrix, dimension: int, is_largest: bool) -> Expr:
     # the adjugate over the determinant is the inverse, whose Frobenius norm is no less than its largest stretch
     volume = graph.abs(graph.dot(first, faces[0]))
     return volume / _norm([face[k] for face in faces for k in range(3)])
+
+
+def _outward(values: list[float], is_largest: bool) -> float:
+    return values[-1] * (1 + _MARGIN) if is_largest else values[0] * (1 - _MARGIN)
 
 
 def _length_of_all(rows: Sequence[Sequence[Expr]], samples: Sequence[Rows]) -> Expr:

@@ -31,7 +31,9 @@ def mesh(csg: str) -> Array:
         source, target = Path(folder, "model.csg"), Path(folder, "model.off")
         source.write_text(fine)
         environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
-        subprocess.run(["openscad", "-o", target, source], check=True, capture_output=True, env=environment, timeout=900)
+        subprocess.run(
+            ["openscad", "-o", target, source], check=True, capture_output=True, env=environment, timeout=900
+        )
         words = target.read_text().split()
     count, faces = int(words[1]), int(words[2])
     corners = np.array(words[4 : 4 + 3 * count], dtype=float).reshape(count, 3)

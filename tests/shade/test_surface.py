@@ -42,9 +42,8 @@ def lights(view: np.ndarray, roughness: float, count: int = 300) -> tuple[np.nda
 def albedo(cosine: float, roughness: float, metallic: float, color: float = 1.0) -> float:
     view = tilted(cosine)
     toward, weights = lights(view, roughness)
-    sent = run(
-        "reflect_light", normal=UP, view=view, light=toward, color=np.full(3, color), metallic=metallic, roughness=roughness
-    )
+    look = {"color": np.full(3, color), "metallic": metallic, "roughness": roughness}
+    sent = run("reflect_light", normal=UP, view=view, light=toward, **look)
     return float(np.sum(sent[0] * weights))
 
 
