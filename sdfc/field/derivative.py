@@ -233,6 +233,8 @@ def _reverse_select(graph: FieldGraph, node: Expr, adjoint: Expr, adjoints: _Adj
 def _first_is_active(node: Expr) -> Expr:
     """Whether a scalar min or max takes its first argument."""
     a, b = node.args
+    if b.is_constant:  # at a tie the side that moves: a box's normal must not vanish exactly on its face
+        return a <= b if node.op is Op.MIN else b <= a
     return a < b if node.op is Op.MIN else b < a
 
 

@@ -7,15 +7,15 @@ from collections.abc import Iterator
 
 from sdfc.diagnostics import SceneError, Source, Span, scene_error
 from sdfc.field.graph import FieldGraph
-from sdfc.openscad import colors
+from sdfc.openscad import colors, plane
 from sdfc.openscad.context import Context
 from sdfc.openscad.invocation import Invocation
 from sdfc.openscad.modules import MODULES
 from sdfc.openscad.parse import parse
 from sdfc.openscad.part import Flat, Part, Solid
-from sdfc.openscad.profile import profile
 from sdfc.openscad.refusal import RefusalError
 from sdfc.openscad.syntax import Call
+from sdfc.openscad.tower import Tower
 from sdfc.scene.library import Library
 from sdfc.scene.model import Scene
 from sdfc.shape.graph import Shape, ShapeGraph
@@ -63,8 +63,8 @@ def _root(context: Context, part: Part | None, span: Span) -> Shape:
             return part.shape
         case Flat():
             context.warn("this file is all in the plane: it is shown 1 thick, as OpenSCAD shows it", span)
-            flat = profile(context, part.plane, span)
-            return context.apply("extrude", span, flat, height=context.number(THICKNESS))
+            tower = Tower(context, span, -0.5 * THICKNESS, 0.5 * THICKNESS, 1.0, 1.0)
+            return plane.fold(part.plane, tower.solid)
 
 
 def _evaluate(context: Context, root: Call) -> Part | None:

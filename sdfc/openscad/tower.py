@@ -19,7 +19,7 @@ from sdfc.openscad.space import Point
 from sdfc.shape.graph import Shape
 
 MOST_SIDES = 64  # of a convex polygon whose sides become planes; one with more is extruded as it is
-MOST_PIECES = 8  # of a polygon that is taken apart into convex ones; one with more is extruded as it is
+MOST_PIECES = 40  # of a polygon that is taken apart into convex ones; one with more is extruded as it is
 UNEVEN = "scaling x and y differently makes its sides curved"
 
 

@@ -89,7 +89,8 @@ class Shader:
     def _lit(self, light: Light, hits: Hits, surface: dict[str, Array], tracer: StepTracer) -> Array:
         """A light's share, shadows traced from clear of the surface by more than it may be wrong (Keinert 2014)."""
         pixel = Rays(hits.p, hits.view, hits.travelled, hits.cone)
-        lift = np.maximum(LIFT, 4.0 * tracer.tolerance(pixel, np.zeros(len(pixel))))
+        gradient = np.sqrt(np.sum(hits.surface.field[:3] ** 2, axis=0))
+        lift = np.maximum(LIFT, 4.0 * tracer.tolerance(pixel, np.zeros(len(pixel)))) / np.clip(gradient, 0.05, 1.0)
         o = hits.p + lift * hits.normal
         lit = self._light_at(light, o)
         sent = self._call("reflect_light", normal=hits.normal, view=hits.view, light=lit.toward, **surface)

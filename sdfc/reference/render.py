@@ -90,9 +90,10 @@ class _Studio:
 
     def _correction(self, rays: Rays, t: Array, surface: Surface) -> Array:
         slope = np.sum(surface.field[:3] * rays.d, axis=0)
+        facing = slope < -0.05 * _length(surface.field[:3])
         most = 4.0 * self.tracer.tolerance(rays, t)
-        step = surface.field[3] / np.where(slope < -0.05, slope, -1.0)
-        return np.where(slope < -0.05, np.clip(step, -most, most), 0.0)
+        step = surface.field[3] / np.where(facing, slope, -1.0)
+        return np.where(facing, np.clip(step, -most, most), 0.0)
 
 
 @lru_cache(maxsize=1)
@@ -180,5 +181,10 @@ def _camera_rays(uniforms: Uniforms, pixels: NDArray[np.int64], size: tuple[int,
 
 
 def _unit(v: Array) -> Array:
-    unit: Array = v / np.maximum(np.sqrt(np.sum(v * v, axis=0)), 1e-30)
+    unit: Array = v / np.maximum(_length(v), 1e-30)
     return unit
+
+
+def _length(v: Array) -> Array:
+    length: Array = np.sqrt(np.sum(v * v, axis=0))
+    return length
