@@ -10,7 +10,7 @@ from sdfc.facts.bounds import Bounds, child_facts
 from sdfc.facts.box import Box, everything
 from sdfc.facts.pointwise import is_pointwise
 from sdfc.facts.ranges import Ranges
-from sdfc.field.graph import Type
+from sdfc.field.graph import Type, params_of
 from sdfc.shape.definition import Exactness
 from sdfc.shape.graph import (
     Affine,
@@ -123,7 +123,10 @@ class Lipschitz:
         if region.is_empty:
             return 1.0
         p = self._bounds.values.input("p", Type(shape.dimension))
-        bound = gradient_bound(lower(shape, p), region.lo, region.hi, self._ranges.of)
+        value = lower(shape, p)
+        # where a param stands twice, its whole range counts twice: pieces of the range lose less
+        pieces = self._ranges.pieces(params_of([value]))
+        bound = max(gradient_bound(value, region.lo, region.hi, piece, 2048 // len(pieces)) for piece in pieces)
         if not math.isfinite(bound):
             raise scene_error(
                 f"no bound of the slope of '{shape.definition.name}' could be found"

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import itertools
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from sdfc.field.graph import Expr
 
 Range = tuple[tuple[float, ...], tuple[float, ...]]
+
+
+_PIECES = 16
+
+
+def _piece(whole: Range, index: int, count: int) -> Range:
+    """The part `index` of `count` equal parts of a range; neighbours share their ends."""
+    lo, hi = whole
+    ends = [tuple(a + (b - a) * i / count for a, b in zip(lo, hi, strict=True)) for i in (index, index + 1)]
+    return ends[0], hi if index + 1 == count else ends[1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,6 +27,15 @@ class Ranges:
 
     of: Mapping[str, Range]
     _found: dict[int, tuple[list[float], list[float]]] = field(default_factory=dict, repr=False, compare=False)
+
+    def pieces(self, names: Collection[str]) -> list[Mapping[str, Range]]:
+        """The ranges of the params named, cut into at most _PIECES boxes that cover them."""
+        live = sorted(name for name in names if self.of[name][0] != self.of[name][1])
+        if not live:
+            return [self.of]
+        cuts = max(1, int(_PIECES ** (1 / len(live)) + 1e-9))
+        shares = [[_piece(self.of[name], i, cuts) for i in range(cuts)] for name in live]
+        return [dict(self.of) | dict(zip(live, choice, strict=True)) for choice in itertools.product(*shares)]
 
     def interval(self, value: Expr) -> tuple[float, float]:
         """Lower and upper bound of a FLOAT."""

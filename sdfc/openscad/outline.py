@@ -20,6 +20,30 @@ def regular(count: int, radius: float) -> tuple[Point2, ...]:
     return tuple((radius * math.cos(a), radius * math.sin(a)) for a in (math.tau * i / count for i in range(count)))
 
 
+@dataclass(frozen=True, slots=True)
+class Regular:
+    """A regular polygon: `phase` is the angle of its first corner (radians)."""
+
+    center: Point2
+    radius: float
+    phase: float
+    count: int
+
+
+def regular_form(points: Sequence[Point2]) -> Regular | None:
+    """These points as a regular polygon, to the six digits of a .csg file; None where they are not one."""
+    count = len(points)
+    x, y = (math.fsum(p[axis] for p in points) / count for axis in (0, 1))
+    first = (points[0][0] - x, points[0][1] - y)
+    radius, phase = math.hypot(*first), math.atan2(first[1], first[0])
+    step = math.copysign(math.tau / count, area(points))
+    for i, p in enumerate(points):
+        angle = phase + step * i
+        if math.dist(p, (x + radius * math.cos(angle), y + radius * math.sin(angle))) > 1e-5 * radius:
+            return None
+    return Regular((x, y), radius, phase, count)
+
+
 def area(points: Sequence[Point2]) -> float:
     """Signed: positive counter-clockwise."""
     shifted = [*points[1:], points[0]]

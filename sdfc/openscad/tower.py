@@ -10,7 +10,7 @@ from typing import assert_never
 from sdfc.diagnostics import Span
 from sdfc.openscad import outline, plane, space
 from sdfc.openscad.context import Context
-from sdfc.openscad.outline import Edge, Pocketed, Point2
+from sdfc.openscad.outline import Edge, Pocketed, Point2, Regular
 from sdfc.openscad.plane import Common, Disc, Joined, Outside, Plane, Polygon, Stroke
 from sdfc.openscad.polytope import Plane as Plane3
 from sdfc.openscad.profile import profile
@@ -18,6 +18,7 @@ from sdfc.openscad.refusal import RefusalError
 from sdfc.openscad.space import Point
 from sdfc.shape.graph import Shape
 
+MOST_PLANES = 12  # sides of a regular polygon that become planes; with more of them one is folded onto the others
 MOST_SIDES = 64  # of a convex polygon whose sides become planes; one with more is extruded as it is
 MOST_PIECES = 40  # of a polygon that is taken apart into convex ones; one with more is extruded as it is
 UNEVEN = "scaling x and y differently makes its sides curved"
@@ -79,8 +80,10 @@ class Tower:
 
     def _polygon(self, polygon: Polygon, beyond: bool) -> Shape:
         points = polygon.points
-        is_convex = outline.is_convex(points)
-        if is_convex and len(points) <= MOST_SIDES:
+        ring = outline.regular_form(points) if len(points) > MOST_PLANES and self.x == self.y else None
+        if ring is not None:
+            return self._ring(ring, self._reach(beyond))
+        if len(points) <= MOST_SIDES and outline.is_convex(points):
             return self._convex(points, outline.edges(points), beyond)
         tapers = (self.x, self.y) != (1.0, 1.0)
         if outline.is_simple(points) and len(points) <= 500:
@@ -136,10 +139,29 @@ class Tower:
             bottom, top = context.number(size * reach.low_scale), context.number(size * reach.high_scale)
             shape = context.apply("capped_cone", self.span, bottom=bottom, top=top, height=height)
         upright = context.raised(shape, 0.5 * (reach.low + reach.high), self.span)
+        return self._leaning(upright, (a, b, c, d), (x, y))
+
+    def _ring(self, ring: Regular, reach: Reach) -> Shape:
+        """A prism of many pieces, all alike."""
+        context = self.context
+        sizes = {
+            "sides": float(ring.count),
+            "bottom": ring.radius * reach.low_scale,
+            "top": ring.radius * reach.high_scale,
+            "height": reach.high - reach.low,
+        }
+        shape = context.apply("faceted_cone", self.span, **{name: context.number(v) for name, v in sizes.items()})
+        upright = context.moved(space.translation((0.0, 0.0, 0.5 * (reach.low + reach.high))), shape, self.span)
+        c, s = math.cos(ring.phase), math.sin(ring.phase)
+        return self._leaning(upright, (c, -s, s, c), ring.center)
+
+    def _leaning(self, upright: Shape, turn: tuple[float, float, float, float], center: Point2) -> Shape:
+        """Turned in the plane, and moved to a centre that is scaled on the way up: a shear."""
+        (a, b, c, d), (x, y) = turn, center
         slope = (self.x - 1.0) / self.height
         start = 1.0 - slope * self.low
         move = ((a, b, x * slope, x * start), (c, d, y * slope, y * start), (0.0, 0.0, 1.0, 0.0))
-        return context.moved(move, upright, self.span)
+        return self.context.moved(move, upright, self.span)
 
     def _as_it_is(self, leaf: Polygon | Stroke, reach: Reach) -> Shape:
         """The distance in the plane, extruded: exact, but without a closed form for rays."""

@@ -11,7 +11,7 @@ from sdfc.shape.stretch import is_similarity, smallest_stretch
 
 
 def flattened(root: Shape) -> Iterator[str]:
-    """Nests of one kind are one node; nothing is said twice; the empty solid is at the root, in an operation or nowhere."""
+    """A nest of one kind is one node; nothing is said twice; the empty solid is at the root, in an operation or nowhere."""
     for node in topological(root):
         match node:
             case Union() | Intersection():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import assert_never
 
 import numpy as np
@@ -78,8 +78,12 @@ class SurfaceFold:
 
     def _fold(self, step: Step, p: Array) -> Surface:
         match step:
-            case Closed() | Ball():
+            case Closed():
                 return self._leaf(step.part, p, step.inside)
+            case Ball():
+                found = self._leaf(step.part, p, step.inside)
+                # over its constant: then the gradient says how much of a distance the value is
+                return replace(found, field=found.field / max(step.lipschitz, 1e-9))
             case Tangent():
                 return self._leaf(step.part, p, True)
             case Chord():

@@ -15,7 +15,9 @@ void main() {
     bool hit = t < FAR;
     vec3 p = o + t * d;
     Surface s = surface(hit ? p : vec3(0.0));
+{% filter indent(4, true) %}
 {% include "shade/polish.glsl" %}
+{% endfilter %}
     first_out = hit ? vec4((travelled + t) * RADIUS, steps, s.material, 1.0) : vec4(-1.0, steps, -1.0, 0.0);
     normal_out = hit ? vec4(normalize(s.field.xyz), 0.0) : vec4(0.0);
     position_out = hit ? vec4(p * RADIUS + CENTRE, 0.0) : vec4(0.0);

@@ -11,7 +11,8 @@ float enter(vec4 v, float t) { return min(enter(v.xy, t), enter(v.zw, t)); }
 float leave(vec2 v, float t) { return t < v.x || t >= v.y ? t : v.y; }
 float leave(vec4 v, float t) { return leave(v.zw, leave(v.xy, t)); }
 
+// what is in both; a run no longer than what two skins share is the face of two solids that only touch
 vec2 both(vec2 u, vec2 v) {
     vec2 w = vec2(max(u.x, v.x), min(u.y, v.y));
-    return w.x < w.y ? w : vec2(FAR, -FAR);
+    return w.x + 4.0 * GROW < w.y ? w : vec2(FAR, -FAR);
 }

@@ -48,7 +48,9 @@ vec4 radiance() {
             hit = t < FAR;
             p = o + t * d;
             s = surface(hit ? p : vec3(0.0));
+{% filter indent(12, true) %}
 {% include "shade/polish.glsl" %}
+{% endfilter %}
             normal = normalize(s.field.xyz);
             normal = dot(normal, view) > 0.0 ? normal : normalize(normal - 1.001 * dot(normal, view) * view);
             travelled += t;

@@ -53,3 +53,18 @@ def test_offsets() -> None:
 def test_what_has_no_area_is_cleaned_away() -> None:
     assert outline.cleaned([(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (0.0, 0.0)]) == ()
     assert outline.cleaned([(0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]) == ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
+
+
+def test_regular_form() -> None:
+    turned = [
+        (3.0 + 2.0 * math.cos(0.4 + 0.3 * math.pi * i / 3), -1.0 + 2.0 * math.sin(0.4 + 0.3 * math.pi * i / 3))
+        for i in range(20)
+    ]
+    made = outline.regular_form([(round(x, 5), round(y, 5)) for x, y in turned])
+    assert made is not None
+    assert made.count == 20
+    assert (*made.center, made.radius, made.phase) == pytest.approx((3.0, -1.0, 2.0, 0.4), abs=1e-4)
+    assert outline.regular_form(list(reversed(turned))) is not None
+    assert outline.regular_form(turned[1:]) is None
+    assert outline.regular_form([(x, 1.001 * y) for x, y in turned]) is None
+    assert outline.regular_form([turned[2 * i % 20] for i in range(20)]) is None
