@@ -294,7 +294,7 @@ class Menu:
 
 
 @st.composite
-def solids(draw: st.DrawFn, world: World, menu: Menu = Menu(), depth: int = 3) -> Shape:  # noqa: B008 (frozen)
+def solids(draw: st.DrawFn, world: World, menu: Menu = Menu(), depth: int = 3) -> Shape:
     """A random solid."""
     again: Callable[[], Shape] = lambda: draw(solids(world, menu, depth - 1))  # noqa: E731
     words = ["primitive"]
@@ -351,5 +351,3 @@ def profiles(draw: st.DrawFn, world: World, live: bool = True, depth: int = 2) -
         case _:
             name = draw(st.sampled_from(sorted(PROFILES)))
             return _applied(draw, world, name, PROFILES[name], [], live)
-
-

@@ -55,7 +55,7 @@ def _environment() -> Environment:
 
 
 def assemble(graph: FieldGraph, plan: Plan, setting: Setting, entry: str, stage: str) -> str:
-    """One complete shader. `entry` is picture, radiance, probe or depth; `stage` is fragment or compute (picture only)."""
+    """One complete shader. `entry` is picture, radiance, probe or depth; `stage` fragment, or compute for a picture."""
     return _Assembly(graph, plan, setting, entry).text(stage)
 
 

@@ -45,8 +45,8 @@ class TraceText:
 class Scope:
     """Where a step is written: the loop's body, the intervals and directions declared before it.
 
-    Inside an intersection (`cut`) what is marched is sunk a little, more than a film is thick that two faces leave which
-    coincide, and asked for all the digits that float32 has.
+    Inside an intersection (`cut`) what is marched is sunk a little, by more than the film that coinciding faces leave,
+    and asked for all the digits that float32 has.
     """
 
     body: Body

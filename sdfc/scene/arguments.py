@@ -12,7 +12,7 @@ from sdfc.field.graph import Expr
 from sdfc.scene import values
 from sdfc.scene.arithmetic import elements
 from sdfc.scene.bindings import did_you_mean
-from sdfc.scene.limits import LONGEST_LIST
+from sdfc.scene.limits import LARGEST_NUMBER, LONGEST_LIST
 from sdfc.scene.names import Context, Names, Problems, evaluate
 from sdfc.scene.ranges import samples
 from sdfc.scene.values import Value
@@ -174,6 +174,8 @@ def _shown(parameter: Parameter, number: float) -> str:
 def _complaint(parameter: Parameter, number: float) -> str | None:
     if not math.isfinite(number):
         return "must be a finite number"
+    if abs(number) > LARGEST_NUMBER:
+        return f"must be within {LARGEST_NUMBER:g} of zero"
     low, high = parameter.minimum, parameter.maximum
     if low is not None and (number <= low if parameter.above else number < low):
         return f"must be {'greater than' if parameter.above else 'at least'} {_shown(parameter, low)}"
@@ -187,3 +189,5 @@ def check_finite(what: str, expr: Expr, span: Span, context: Context) -> None:
     for value, where in samples(expr, context):
         if not all(map(math.isfinite, value.numbers)):
             raise scene_error(f"{what} must be finite{where}", span)
+        if max(map(abs, value.numbers)) > LARGEST_NUMBER:
+            raise scene_error(f"{what} must be within {LARGEST_NUMBER:g} of zero{where}", span)

@@ -9,6 +9,7 @@ MOST_STEPS = 500_000  # rounds of loops and calls of functions
 LONGEST_LOOP = 100_000
 LONGEST_LIST = 1_000  # given to one field: each element is printed in the shader
 MOST_ROWS = 100_000  # of a CSV
+LARGEST_NUMBER = 1e12  # in size, of what is given to anything: products of a few stay within float32
 LARGEST_FILE = 4 * 2**20  # bytes, of any file that is read
 MOST_FILES = 100
 MOST_PROBLEMS = 50  # that are looked for

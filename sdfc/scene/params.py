@@ -7,6 +7,7 @@ import math
 from sdfc.diagnostics import Span, scene_error
 from sdfc.field.graph import Expr, Type
 from sdfc.scene import values
+from sdfc.scene.limits import LARGEST_NUMBER
 from sdfc.scene.model import Param
 from sdfc.scene.names import Names, evaluate
 from sdfc.scene.values import Quantity, RangeValue, Unit, words
@@ -66,6 +67,8 @@ def _limit(value: Quantity, default: Quantity, place: Span) -> float:
 def _finite(expr: Expr, span: Span) -> tuple[float, ...]:
     if not all(map(math.isfinite, expr.numbers)):
         raise scene_error("a param must be finite", span)
+    if max(map(abs, expr.numbers)) > LARGEST_NUMBER:
+        raise scene_error(f"a param must be within {LARGEST_NUMBER:g} of zero", span)
     return expr.numbers
 
 

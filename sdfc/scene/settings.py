@@ -12,6 +12,7 @@ from sdfc.field.graph import Expr, FieldGraph
 from sdfc.scene import values
 from sdfc.scene.arguments import Given, match
 from sdfc.scene.color import linear
+from sdfc.scene.limits import LARGEST_NUMBER
 from sdfc.scene.model import Camera, Light, PointLight, Sky, Sun
 from sdfc.scene.names import Names, Problems, evaluate
 from sdfc.scene.ranges import samples
@@ -196,6 +197,8 @@ def _property(key: str, row: _Row, given: Given, names: Names) -> Expr:
             within = row.low < number < row.high if row.open else row.low <= number <= row.high
             if not (within and math.isfinite(number)):
                 raise scene_error(f"{key} {_wanted(row)}, not {_shown(row, number)}{where}", given.span)
+            if abs(number) > LARGEST_NUMBER:
+                raise scene_error(f"{key} must be within {LARGEST_NUMBER:g} of zero{where}", given.span)
     return expr
 
 

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from shape_trees import (
+    SOLIDS,
     SPAN,
     USER_SOLIDS,
-    SOLIDS,
     Array,
     Menu,
     World,
