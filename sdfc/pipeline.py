@@ -19,6 +19,7 @@ from sdfc.passes.own_origin import Frame, frame_of, own_origin
 from sdfc.passes.paint import paint
 from sdfc.passes.place import place
 from sdfc.passes.prune import prune
+from sdfc.passes.recognise import recognise
 from sdfc.plan.plan import Plan
 from sdfc.plan.prove import Prover
 from sdfc.plan.setting import Setting, setting_of
@@ -97,6 +98,11 @@ class Workshop:
 
 
 PASSES = (
+    Pass(
+        "recognise",
+        "first: what it makes of profiles is flattened, painted and placed like all solids",
+        lambda s, w: recognise(s, w.scene.shapes, w.scene.values, w.library.definition),
+    ),
     Pass("flatten", "fewer nodes for every pass that follows", lambda s, w: flatten(s, w.scene.shapes)),
     Pass("paint", "while `a - b` still tells which part is cut", lambda s, w: paint(s, w.scene.shapes)),
     Pass("own_origin", "before transforms are composed: one more to compose", lambda s, w: w.framed(s)),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -16,6 +17,34 @@ if TYPE_CHECKING:
     import numpy as np
 
 RunFunction = Callable[..., "np.ndarray[Any, Any]"]
+Golden = Callable[[str, str], None]
+GOLDEN = Path(__file__).parent / "golden"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """--update-golden writes what tests made as what they should make."""
+    parser.addoption("--update-golden", action="store_true", help="write tests/golden anew (read the difference)")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """No machine approves of its own work."""
+    if config.getoption("--update-golden") and os.environ.get("CI"):
+        raise pytest.UsageError("--update-golden is refused where CI is set")
+
+
+@pytest.fixture
+def golden(request: pytest.FixtureRequest) -> Golden:
+    """golden(name, text) holds the text against tests/golden/name."""
+
+    def compare(name: str, text: str) -> None:
+        path = GOLDEN / name
+        if request.config.getoption("--update-golden"):
+            GOLDEN.mkdir(exist_ok=True)
+            path.write_text(text)
+        assert path.exists(), f"there is no {path}: run pytest --update-golden"
+        assert text == path.read_text(), f"the text is not that of {path}: if it should differ, --update-golden"
+
+    return compare
 
 
 @pytest.fixture(scope="session")
@@ -71,10 +100,10 @@ def run_function(gl: moderngl.Context) -> RunFunction:
 def _compute_shader(function: Function, count: int) -> str:
     """A shader whose thread i calls the function with column i of the rows in `given`."""
     from sdfc.glsl.expression import print_function, type_name
-    from sdfc.glsl.names import identifier
+    from sdfc.glsl.names import identifier, param_name
 
     params = {str(n.value): n.type for n in topological([function.result]) if n.op is Op.PARAM}
-    uniforms = "".join(f"uniform {type_name(t)} {identifier(name)};\n" for name, t in sorted(params.items()))
+    uniforms = "".join(f"uniform {type_name(t)} {param_name(name)};\n" for name, t in sorted(params.items()))
     arguments = []
     row = 0
     for _, type_ in function.parameters:
@@ -99,10 +128,10 @@ void main() {{
 
 
 def _set_uniforms(program: Any, root: Expr, params: Mapping[str, Any]) -> None:
-    from sdfc.glsl.names import identifier
+    from sdfc.glsl.names import param_name
 
     for node in topological([root]):
-        name = identifier(str(node.value))
+        name = param_name(str(node.value))
         if node.op is Op.PARAM and name in program:  # the compiler may have dropped it
             value = params[str(node.value)]
             program[name].value = bool(value) if node.type is Type.BOOL else value

@@ -7,10 +7,12 @@ from collections.abc import Sequence
 from typing import assert_never
 
 from sdfc.facts.box import Box, everything, nothing
+from sdfc.facts.enclosure import enclosing
 from sdfc.facts.ranges import Ranges
-from sdfc.field.graph import Expr, FieldGraph
+from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.shape.definition import ChildFacts, Claims, Exactness
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union
+from sdfc.shape.lower import lower
 from sdfc.shape.matrix import Matrix
 from sdfc.shape.stretch import smallest_stretch
 
@@ -24,22 +26,25 @@ class Bounds:
         self.values = values
         self._ranges = ranges
         self._boxes: dict[tuple[int, float], Box] = {}
+        self._lowerings: dict[int, float] = {}
+        self._stretches: dict[int, tuple[float, float]] = {}
 
     def box(self, shape: Shape, level: float = 0.0) -> Box:
         """A box that holds every point where the shape's field is `level` or less; of the shape's own dimension."""
         stack: list[tuple[Shape, float]] = [(shape, level)]
+        opened: dict[tuple[int, float], tuple[Sequence[Shape], float]] = {}
         while stack:
             node, at = stack[-1]
-            if (node.id, at) in self._boxes:
+            key = (node.id, at)
+            if key in self._boxes:
                 stack.pop()
-                continue
-            children, below = self._asked(node, at)
-            waiting = [c for c in children if (c.id, below) not in self._boxes]
-            if waiting:
-                stack.extend((c, below) for c in waiting)
+            elif key in opened:
+                children, below = opened.pop(key)
+                self._boxes[key] = self._box(node, at, [self._boxes[c.id, below] for c in children])
+                stack.pop()
             else:
-                self._boxes[node.id, at] = self._box(node, at, [self._boxes[c.id, below] for c in children])
-                stack.pop()
+                opened[key] = children, below = self._asked(node, at)
+                stack.extend((c, below) for c in children if (c.id, below) not in self._boxes)
         return self._boxes[shape.id, level]
 
     def moved(self, matrix: Matrix, box: Box) -> Box:
@@ -56,8 +61,7 @@ class Bounds:
         """The children whose boxes the node's box is made of, and at which level."""
         match node:
             case Apply():
-                lowering = node.definition.claims.lowering
-                return node.children, level + (self.most(lowering(node.environment)) if lowering else 0.0)
+                return node.children, level + self._lowering(node)
             case Affine():
                 return (node.child,), self._unstretched(node, level)
             case Union() | Intersection():
@@ -74,11 +78,22 @@ class Bounds:
         high = self._ranges.interval(value)[1]
         return math.inf if math.isnan(high) else high
 
+    def _lowering(self, node: Apply) -> float:
+        """How far below its children's the node's values may lie."""
+        claim = node.definition.claims.lowering
+        if claim is None:
+            return 0.0
+        if node.id not in self._lowerings:
+            self._lowerings[node.id] = self.most(claim(node.environment))
+        return self._lowerings[node.id]
+
     def _unstretched(self, node: Affine, level: float) -> float:
         """The child's level: the field is the child's times the smallest stretch."""
         if level == 0.0:
             return 0.0
-        least, most = self._ranges.interval(smallest_stretch(node.forward, node.dimension))
+        if node.id not in self._stretches:
+            self._stretches[node.id] = self._ranges.interval(smallest_stretch(node.forward, node.dimension))
+        least, most = self._stretches[node.id]
         stretch = least if level > 0 else most
         return level / stretch if stretch > 0 else math.inf  # also where it is not a number
 
@@ -112,7 +127,7 @@ class Bounds:
         if definition.is_standard and boxes and level <= 0.0 and all(b.is_empty for b in boxes):
             return nothing(size)
         if claims.bounds is None:  # what says how far it lowers its children does not move them
-            return _hull(boxes) if claims.lowering is not None and boxes else everything(size)
+            return _hull(boxes) if claims.lowering is not None and boxes else self._enclosed(node, level)
         if level > 0.0 and not claims.bounds_use_level and not (definition.is_standard and boxes):
             return self._widened(node, claims, level, boxes)
         return self._claimed(node, level, boxes)
@@ -123,7 +138,14 @@ class Bounds:
             return _hull(boxes)
         if claims.exactness in _EXACT_OUTSIDE and not boxes:
             return self._claimed(node, level, boxes).widened(level)
-        return everything(node.dimension)
+        return self._enclosed(node, level)
+
+    def _enclosed(self, node: Apply, level: float) -> Box:
+        """What intervals say of a formula that a user wrote; of no operation, since nests of them are long."""
+        if node.children or node.definition.is_standard:
+            return everything(node.dimension)
+        p = self.values.input("p", Type(node.dimension))
+        return enclosing(lower(node, p), node.dimension, level, self._ranges)
 
     def _claimed(self, node: Apply, level: float, boxes: list[Box]) -> Box:
         bounds = node.definition.claims.bounds

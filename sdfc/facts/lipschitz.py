@@ -44,6 +44,10 @@ class Lipschitz:
         everywhere = self._global(shape)
         return self._over(shape, self._bounds.box(shape).meet(domain)) if everywhere is None else everywhere
 
+    def throughout(self, shape: Shape, domain: Box) -> float:
+        """Over all of the domain, also far from the shape: for what is blended with others. Raises like `constant`."""
+        return self._over(shape, domain)
+
     def is_global(self, shape: Shape) -> bool:
         """Whether every constant below was claimed: then it holds everywhere, not only in a box."""
         return self._global(shape) is not None

@@ -16,7 +16,7 @@ from sdfc.glsl.functions import Functions
 from sdfc.glsl.light import LightWriter
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
-from sdfc.glsl.names import identifier
+from sdfc.glsl.names import identifier, param_name
 from sdfc.glsl.proven import ProvenWriter, TraceText
 from sdfc.glsl.surface import SurfaceWriter
 from sdfc.plan.plan import CUT, FINE, GROW, HORIZON, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, Plan
@@ -86,7 +86,7 @@ class _Assembly:
     def _context(self) -> dict[str, object]:
         plan, tracer = self._plan, self._plan.tracer
         trace = TraceText("", False, False)
-        many = ManyWriter(self._graph, self._functions, self._live, plan.materials)
+        many = ManyWriter(self._graph, self._functions, self._live, plan.materials, plan.rows_at_once)
         if tracer.needs_steps:
             trace = ProvenWriter(self._graph, self._functions, self._live, many).write(plan.root)
         has_map = tracer.needs_map or self._lit
@@ -156,7 +156,7 @@ class _Assembly:
         blends = sum(isinstance(leaf, Blend) for leaf in leaves_of(self._plan.root))
         rays = 1 + (len(self._setting.lights) if self._lit else 0)
         taps = 4 if self._lit else 0
-        free = (MOST_LOOPS - (rays + taps) * self._plan.rows) // rays - 2 * self._plan.events
+        free = (MOST_LOOPS - (rays + taps) * self._plan.table_turns) // rays - 2 * self._plan.events
         return max(16, min(2048, free // (1 + 5 * blends)))
 
     def _header(self) -> list[str]:
@@ -167,7 +167,7 @@ class _Assembly:
         return [
             Variable(
                 type_name(p.type),
-                identifier(p.name),
+                param_name(p.name),
                 uniform_name(p),
                 f"{p.unit}, {_numbers(p.default)}{_range(p)}",
             )

@@ -105,8 +105,8 @@ float {name}_clear(float value, float level, {formal}) {{
         float at_chord = {name}_ahead(chord, {actual}) - level;
         float beyond = chord + (chord - left) * at_chord / max(left_value - at_chord, 1e-30);
         bool closer = at_chord > 0.0 && left_value > at_chord && beyond < right;
-        left = at_chord > 0.0 ? chord : left;
-        left_value = at_chord > 0.0 ? at_chord : left_value;
+        left = chord;  // proven: what puts its value below the level is rounding
+        left_value = max(at_chord, 0.0);
         right = closer ? beyond : right;
         right_value = closer ? {name}_ahead(beyond, {actual}) - level : right_value;
         if (right_value > 0.0) return left;

@@ -8,28 +8,8 @@ from sdfc.diagnostics import Span
 from sdfc.field.graph import LEAVES, Expr, Type
 from sdfc.glsl.expression import Printer, type_name
 from sdfc.glsl.functions import Call
-from sdfc.glsl.names import Names
+from sdfc.glsl.names import LOCALS, Names
 from sdfc.shape.matrix import Matrix
-
-# what templates and generated statements use: no local of an expression may take these
-_TAKEN = (
-    "o",
-    "d",
-    "p",
-    "q",
-    "t",
-    "next",
-    "near",
-    "far",
-    "eps",
-    "fine",
-    "first",
-    "start",
-    "limit",
-    "count",
-    "steps",
-    "field",
-)
 
 
 def place(span: Span) -> str:
@@ -46,7 +26,7 @@ class Body:
         self._live: Callable[[Expr], str | None] = live
         self._indent = indent
         self._local: dict[int, str] = {}
-        self._scope = Names(_TAKEN)
+        self._scope = Names(LOCALS)
         self._printer = Printer(self._name, self._scope)
 
     def _name(self, expr: Expr) -> str | None:

@@ -8,7 +8,7 @@ from enum import IntEnum
 from typing import TypeAlias
 
 from sdfc.field.graph import Expr, Op, Type
-from sdfc.glsl.names import identifier, literal, type_name
+from sdfc.glsl.names import identifier, literal, param_name, type_name
 
 
 class Level(IntEnum):
@@ -90,8 +90,10 @@ def compose(node: Expr, text_of: Lookup) -> Text:
     match node.op:
         case Op.CONST:
             return constant(node.type, node.numbers)
-        case Op.INPUT | Op.PARAM:
+        case Op.INPUT:
             return Text(identifier(str(node.value)), is_name=True)
+        case Op.PARAM:
+            return Text(param_name(str(node.value)), is_name=True)
         case Op.VECTOR:
             return _vector(node, text_of, depth)
         case Op.SWIZZLE:

@@ -15,7 +15,7 @@ from sdfc.field.function import Function
 from sdfc.field.graph import LEAVES, Expr, Op, topological
 from sdfc.field.order import evaluation_order
 from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose
-from sdfc.glsl.names import Names, identifier, literal, type_name
+from sdfc.glsl.names import Names, identifier, literal, param_name, type_name
 
 __all__ = ["Printer", "literal", "print_function", "type_name"]
 
@@ -33,7 +33,7 @@ def print_function(function: Function, name: str | None = None) -> str:
     Parameters keep their names where GLSL allows it and no uniform has the same. `name` is taken as it is.
     """
     nodes = list(topological([function.result]))
-    scope = Names(identifier(str(n.value)) for n in nodes if n.op is Op.PARAM)
+    scope = Names(param_name(str(n.value)) for n in nodes if n.op is Op.PARAM)
     renamed = {name: scope.fresh(name) for name, _ in function.parameters}
     own = {name for name, _ in function.parameters}
     assert all(n.value in own for n in nodes if n.op is Op.INPUT), f"{function.name} reads what is no parameter of it"

@@ -10,7 +10,7 @@ from typing import assert_never
 from sdfc.field.derivative import directional, gradient
 from sdfc.field.function import Function
 from sdfc.field.graph import Expr, FieldGraph, Type
-from sdfc.glsl.names import Names, identifier
+from sdfc.glsl.names import LOCALS, Names, param_name
 from sdfc.plan.steps import Part
 from sdfc.shape.definition import Argument, Kind
 from sdfc.shape.graph import Apply
@@ -58,7 +58,7 @@ class Functions:
         self._lowering = lowering
         self._looks = looks
         self._by_key: dict[tuple[object, ...], Function] = {}
-        self.names = Names(identifier(n) for n in taken)
+        self.names = Names((*LOCALS, *(param_name(n) for n in taken)))
 
     @property
     def all(self) -> tuple[Function, ...]:

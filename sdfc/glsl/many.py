@@ -15,7 +15,7 @@ from sdfc.glsl.body import Body, place
 from sdfc.glsl.expression import literal, type_name
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
-from sdfc.plan.cluster import CLUSTER, clustered, rows_at_once
+from sdfc.plan.cluster import CLUSTER, clustered
 from sdfc.plan.steps import Closed, Many
 from sdfc.shape.material import Material
 
@@ -47,11 +47,13 @@ class ManyWriter:
         functions: Functions,
         live: Live,
         materials: Sequence[Material],
+        at_once: int,
     ) -> None:
         self._graph = graph
         self._functions = functions
         self._live = live
         self._materials = list(materials)
+        self._at_once = at_once
         self._records: dict[int, Record] = {}
         self.tables: list[str] = []
         self.meetings: list[str] = []
@@ -142,7 +144,7 @@ class ManyWriter:
             names[4],
             len(groups),
             math.ceil(floats / 4),
-            rows_at_once(len(many.members)),
+            self._at_once,
         )
         self.tables += [self._table(groups, record), _boxes(groups, record)]
         return record

@@ -54,6 +54,11 @@ point_falloff position_out prepare radiance radiance_out ray_ahead ray_cone ray_
 sky sky_radiance steps sun_disc surface tangent tolerance tone_map trace transmit travelled window within
 """
 
+# Locals of templates and of generated statements: no function and no local of an expression may take these.
+LOCALS = tuple(
+    "o d p q t next near far eps fine first start limit count steps field light hit view normal toward".split()
+)
+
 RESERVED = frozenset(_KEYWORDS.split()) | frozenset(_FUNCTIONS.split()) | frozenset(_TEMPLATES.split())
 
 
@@ -65,6 +70,11 @@ def identifier(name: str) -> str:
     if legal[0].isdigit() or legal.startswith("gl_"):
         return f"n{legal}"
     return f"{legal}_" if legal in RESERVED else legal
+
+
+def param_name(name: str) -> str:
+    """The global that holds a param: no variable or function of ours begins like it, so that none can hide it."""
+    return identifier(f"param_{name}")
 
 
 class Names:

@@ -49,19 +49,31 @@ def _flat_hull(discs: list[tuple[Point2, float]]) -> Flat | None:
 def _spanned(m: Invocation, spans: Callable[[bool], list[Generator]]) -> Solid | None:
     """The hull of `spans(as_curves)`: with the pieces that the file asks for, unless these make too many faces."""
     corners = list(dict.fromkeys(spans(False)))
-    if not any(g.radius for g in corners):
-        made = polytope.hull([g.center for g in corners])
-        if made is None:
-            return None
-        curves = spans(True)
-        if len(made.planes) > MOST_FACES and any(g.radius for g in curves):
-            with suppress(RefusalError):
-                curved = _rounded(m, curves)
-                m.context.warn(f"`{m.call.name}` of {len(made.planes)} faces: shown with true curves instead", m.span)
-                return curved
-        shape = m.context.polytope(made.corners, made.planes, m.span)
-        return Solid(shape, points_hull(made.corners), is_convex=True)
-    return _rounded(m, corners)
+    if any(g.radius for g in corners):
+        try:
+            return _rounded(m, corners)
+        except RefusalError:
+            curved = _curved(m, spans, len(corners))
+            if curved is None:
+                raise
+            return curved
+    made = polytope.hull([g.center for g in corners])
+    if made is None:
+        return None
+    curved = _curved(m, spans, len(made.planes)) if len(made.planes) > MOST_FACES else None
+    shape = m.context.polytope(made.corners, made.planes, m.span)
+    return curved or Solid(shape, points_hull(made.corners), is_convex=True)
+
+
+def _curved(m: Invocation, spans: Callable[[bool], list[Generator]], pieces: int) -> Solid | None:
+    """The hull with curves for what has few pieces, where that is exact."""
+    with suppress(RefusalError):
+        curves = list(dict.fromkeys(spans(True)))
+        made = _rounded(m, curves) if any(g.radius for g in curves) else None
+        if made is not None:
+            m.context.warn(f"`{m.call.name}` of {pieces} faces or corners: shown with true curves instead", m.span)
+            return made
+    return None
 
 
 def _rounded(m: Invocation, spans: Sequence[Generator]) -> Solid | None:

@@ -58,7 +58,7 @@ def _faceted_ball(m: Invocation, radius: float, facets: int) -> Solid:
     angles = [math.pi * (i + 0.5) / count for i in range(count)]
     rings = [(radius * math.sin(a), -radius * math.cos(a)) for a in angles]
     context = m.context
-    faces = [_slope(low, high, facets) for low, high in pairwise(rings) if low[1] + high[1] > -SMALLEST]
+    faces = [_slope(low, high, facets) for low, high in pairwise(rings) if low[1] + high[1] > -1e-9 * radius]
     shape = context.apply(
         "faceted_ball",
         m.span,

@@ -5,13 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from types import MappingProxyType
 
+from sdfc.facts.bounds import Bounds
 from sdfc.passes.flatten import is_everything, is_nothing
-from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, topological
+from sdfc.shape.graph import (
+    Affine,
+    Apply,
+    Complement,
+    Intersection,
+    Nothing,
+    Paint,
+    Shape,
+    Union,
+    children_of,
+    topological,
+)
 from sdfc.shape.stretch import is_similarity, smallest_stretch
 
 
 def flattened(root: Shape) -> Iterator[str]:
-    """A nest of one kind is one node; nothing is said twice; the empty solid is at the root, in an operation or nowhere."""
+    """A nest of one kind is one node, nothing is in it twice, and the empty solid is not in it."""
     for node in topological(root):
         match node:
             case Union() | Intersection():
@@ -91,6 +103,25 @@ def _complement_faults(shape: Shape, is_direct: bool) -> Iterator[str]:
             pass
         case Union() | Intersection() | Complement():
             yield f"a complement of a {type(shape).__name__}"
+
+
+def pruned(root: Shape, bounds: Bounds) -> Iterator[str]:
+    """No part is empty, and nothing is subtracted out of reach; what operations are applied to is left alone."""
+    stack = [] if is_nothing(root) else [root]
+    while stack:
+        node = stack.pop()
+        if bounds.box(node).is_empty:
+            yield f"an empty {type(node).__name__}"
+        match node:
+            case Intersection():
+                box = bounds.box(node)
+                cuts = [c.child for c in node.children if isinstance(c, Complement)]
+                yield from (f"{cut.span} cuts nothing" for cut in cuts if bounds.box(cut).meet(box).is_empty)
+                stack.extend(node.children)
+            case Union() | Paint() | Affine():
+                stack.extend(children_of(node))
+            case _:
+                pass
 
 
 PROMISES: MappingProxyType[str, Callable[[Shape], Iterator[str]]] = MappingProxyType(

@@ -22,7 +22,7 @@ from sdfc.shape.graph import (
 
 # blends that are plain unions where their operands differ by the width or more (ALGORITHMS C2)
 _COMPACT = ("smooth_union", "smooth_union_cubic", "smooth_union_circular")
-_DEEPEST = 12  # blends in blends: each asks for the boxes of all below it at a level of its own
+_DEEPEST = 4  # blends in blends: each asks for the boxes of all below it at a level of its own
 
 
 @dataclass(frozen=True, slots=True)

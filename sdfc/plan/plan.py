@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sdfc.plan.cluster import rows_at_once, turns
+from sdfc.plan.cluster import CLUSTER, rows_at_once, turns
 from sdfc.plan.steps import Any, Closed, Many, Step, leaves_of
 from sdfc.shape.material import Material
 from sdfc.tracers.record import Tracer
@@ -39,8 +39,17 @@ class Plan:
         return sum(2 * leaf.intervals for leaf in single if isinstance(leaf, Closed))
 
     @property
-    def rows(self) -> int:
-        """How often loops over tables may turn: once a row, once a cluster."""
+    def rows_at_once(self) -> int:
+        """How many rows a turn of the loops over tables takes."""
+        return rows_at_once(self._rows)
+
+    @property
+    def table_turns(self) -> int:
+        """How often the loops over tables may turn for one ray: once a cluster, once for so many rows."""
+        return turns(self._rows, self.rows_at_once)
+
+    @property
+    def _rows(self) -> int:
         steps = self.root.steps if isinstance(self.root, Any) else (self.root,)
-        counts = [len(step.members) for step in steps if isinstance(step, Many)]
-        return sum(turns(n, rows_at_once(n)) for n in counts)
+        tables = [len(step.members) for step in steps if isinstance(step, Many)]
+        return sum(CLUSTER * (-(-n // CLUSTER)) for n in tables)

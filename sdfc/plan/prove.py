@@ -7,7 +7,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import assert_never
 
-from sdfc.diagnostics import SceneError
+from sdfc.diagnostics import SceneError, scene_error
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box, everything
 from sdfc.facts.curvature import convex_shapes
@@ -124,6 +124,8 @@ class Prover:
                 return _all([self._step(c, inner) for c in shape.children])
             case Nothing():
                 return Any(())
+            case Complement(child=Nothing()):
+                raise scene_error("the scene is solid everywhere", shape.span, "leave some room to look from")
             case Apply() | Affine() | Paint() | Complement():
                 leaf = unwrapped(shape)
                 assert leaf is not None, f"{shape} is not normalised"
@@ -193,7 +195,7 @@ class Prover:
             first, second = (self._blend_of(c, whole) for c in leaf.shape.children)
             return None if first is None or second is None else BlendNode(leaf.shape, first, second)
         box = self._bounds.box(whole.placed)
-        return Falling(self.part(leaf), self._lipschitz.constant(leaf.placed, box), leaf.inside)
+        return Falling(self.part(leaf), self._lipschitz.throughout(leaf.placed, box), leaf.inside)
 
     def part(self, leaf: Leaf) -> Part:
         """The part of a leaf: one for all its uses in the tree, so that it is computed once."""

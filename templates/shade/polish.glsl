@@ -4,5 +4,5 @@ s.field.xyz = dot(s.field.xyz, s.field.xyz) > 1e-12 ? s.field.xyz : -d;
 float steepness = length(s.field.xyz), slope = dot(s.field.xyz, d);
 float most = 4.0 * tolerance(t) / clamp(steepness, 0.05, 1.0);
 float correction = slope < -0.05 * steepness ? clamp(s.field.w / slope, -most, most) : 0.0;
-t -= hit ? correction : 0.0;
+t = hit ? max(t - correction, -travelled) : t;  // never behind the eye
 p = o + t * d;

@@ -134,3 +134,37 @@ def test_boxes_of_deep_trees() -> None:
         shape = world.apply("round", world.at(1e-3, 0, 0, shape), radius=1e-4)
     box = world.bounds.box(shape)
     assert math.isclose(box.hi[0], 0.5 + 3.0 + 0.3) and math.isclose(box.lo[0], 3.0 - 0.5 - 0.3)
+
+
+@pytest.mark.parametrize(
+    ("formula", "half"),
+    [
+        ("dot(p, p) - 1", (1.0, 1.0, 1.0)),
+        ("length(p) - 0.7 + 0.1 * sin(5 * p.x) * cos(4 * p.y)", (0.8, 0.8, 0.8)),
+        ("max(abs(p.x) - 30, max(abs(p.y), abs(p.z)) - 2)", (30.0, 2.0, 2.0)),
+        ("p.y + sin(p.x)", (math.inf, math.inf, math.inf)),
+    ],
+)
+def test_a_formula_without_claims_is_enclosed_by_intervals(formula: str, half: tuple[float, ...]) -> None:
+    world = World()
+    world.declare(f"field free() = {formula}")
+    free = world.apply("free")
+    check_boxes(world, free, 3)
+    found = world.bounds.box(free).hi
+    assert all(h <= f <= 1.2 * h + 0.1 for f, h in zip(found, half, strict=True) if math.isfinite(h))
+    assert formula != "p.y + sin(p.x)" or found[1] <= 2.0
+
+
+def test_a_formula_that_is_nowhere_negative_is_empty() -> None:
+    world = World()
+    world.declare("field free() = dot(p, p) + 1")
+    assert world.bounds.box(world.apply("free")).is_empty
+    assert not world.bounds.box(world.apply("free"), 2.0).is_empty
+
+
+def test_an_enclosure_holds_for_every_value_of_the_params() -> None:
+    world = World()
+    world.declare("field free(size: length) = length(p) - size")
+    free = world.apply("free", size=world.values.param("size"))
+    check_boxes(world, free, 4)
+    assert 1.4 <= world.bounds.box(free).hi[0] <= 1.6

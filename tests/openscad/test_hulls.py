@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from csg_values import distance, scene
 
+from sdfc.diagnostics import SceneError
 from sdfc.openscad import outline, plane, polytope
 from sdfc.openscad.plane import Disc, Polygon
 
@@ -100,3 +101,21 @@ def test_hull_of_equal_things_is_the_thing() -> None:
 def test_minkowski_of_a_box_and_a_ball_is_exact() -> None:
     text = "minkowski(convexity = 0) { cube(size = [2, 4, 6], center = true); sphere(r = 1); }"
     assert distance(text, [(2, 3, 4), (0, 0, 0), (5, 0, 0)]) == pytest.approx([math.sqrt(3) - 1, -2.0, 3.0])
+
+
+def test_a_hull_of_too_many_pieces_is_of_curves() -> None:
+    text = (
+        "hull() {{ sphere($fn = {}, r = 2); multmatrix([[1,0,0,5],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) sphere(r = 2{}); }}"
+    )
+    for end in (", $fn = 30", ""):
+        made = scene(text.format(30, end))
+        assert "true curves" in made.warnings[0].message
+        assert distance(text.format(30, end), [(2.5, 0, 3)]) == pytest.approx([1.0])
+    assert scene(text.format(5, ", $fn = 5")).warnings == ()
+
+
+def test_a_stretched_ball_of_few_pieces_has_a_hull_but_a_true_one_has_none() -> None:
+    text = "hull() {{ multmatrix([[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]) sphere($fn = {}, r = 1); cube(1); }}"
+    assert (distance(text.format(8), [(1.7, 0, 0)]) < 0).all()
+    with pytest.raises(SceneError, match="stretched"):
+        scene(text.format(0))

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 from closed_truth import closed_truth
-from truth import THIN, Picture, Tracing, compiled_text
+from truth import THIN, Picture, Tracing, compiled_text, every
 
 from sdfc.api.renderer import Shot
 from sdfc.api.request import View
@@ -122,8 +122,8 @@ def test_from_far_away(radii: float, tracing: Tracing) -> None:
 
 @pytest.mark.gpu
 def test_many_balls_are_all_there(tracing: Tracing) -> None:
-    compiled = compiled_text(LARGE["4800 balls"])
-    judged(tracing.picture(compiled, (48, 27)), compiled)
+    compiled = compiled_text(f"scene {{ {spheres(1200)} }}")
+    judged(every(tracing.picture(compiled, (48, 27)), 100), compiled)
 
 
 @pytest.mark.gpu

@@ -1,0 +1,397 @@
+#version 450 core
+// test.sdf, made by sdfc
+// tracer: proven. Events of closed-form ray intervals, tangents of convex functions, Lipschitz balls for the rest.
+
+uniform vec3 eye;     // in the scene's own coordinates: (p - centre) / radius
+uniform vec3 axis_x;  // to the right edge of the picture, to its upper edge, and ahead
+uniform vec3 axis_y;
+uniform vec3 axis_z;
+uniform vec4 window;  // width, height, and the sample's place in its pixel
+uniform vec3 pixel;   // half a pixel: size at the eye, growth with the distance; 1 in perspective, 0 in parallel
+
+vec2 cone;
+
+// the ray of this pixel
+void camera_ray(out vec3 o, out vec3 d) {
+    vec2 at = (gl_FragCoord.xy + window.zw) / window.xy * 2.0 - 1.0;
+    vec3 across = at.x * axis_x + at.y * axis_y;
+    o = eye + (1.0 - pixel.z) * across;
+    d = normalize(axis_z + pixel.z * across);
+    cone = pixel.xy;
+}
+
+uniform float set_edge;  // number, 0.1 in 0 .. 0.2
+
+const float RADIUS = 1.0114409;  // the scene's own unit, and its own origin
+const vec3 CENTRE = vec3(0.0, 0.0, 0.0);
+
+float steps = 0.0;
+float travelled = 0.0;  // along the path, to where the ray at hand has t = 0
+float edge;
+
+void prepare() {
+    edge = set_edge;
+}
+
+// Intervals of the ray's parameter: vec2(enter, leave), vec4 for two in order; an empty one leaves at -FAR.
+const float FAR = 1e9;
+const float GROW = 2.3841858e-7;  // solids are this much larger: parts that touch leave no crack
+const float CUT = 9.536743e-7;  // what is cut away is this much larger: faces that coincide leave no film
+
+// the first parameter at or after t inside the interval
+float enter(vec2 v, float t) { return t < v.y ? max(t, v.x) : FAR; }
+float enter(vec4 v, float t) { return min(enter(v.xy, t), enter(v.zw, t)); }
+
+// the first parameter at or after t outside it
+float leave(vec2 v, float t) { return t < v.x || t >= v.y ? t : v.y; }
+float leave(vec4 v, float t) { return leave(v.zw, leave(v.xy, t)); }
+
+// what is in both; a run no longer than what two skins share is the face of two solids that only touch
+vec2 both(vec2 u, vec2 v) {
+    vec2 w = vec2(max(u.x, v.x), min(u.y, v.y));
+    return w.x + 4.0 * GROW < w.y ? w : vec2(FAR, -FAR);
+}
+
+// How near counts as there, at parameter t of the ray at hand. What converges fast is asked for all that float32 has;
+// the rest for a small part of a pixel.
+float rounding(float t) { return 1.9073486e-6 * max(1.0, abs(t)); }
+float tolerance(float t) { return max(rounding(t), 0.015625 * (cone.x + cone.y * (travelled + t))); }
+
+// Steps of what has no closed form: each answers with the next parameter that is worth a look, t itself for a hit.
+const int MOST_STEPS = 2048;  // all loops of a pixel together stay below 65 535, where llvmpipe stops them
+
+// v: the value of a convex function and its slope along the ray; its tangent cannot overshoot
+float tangent(float t, vec2 v, float eps) {
+    float fall = 2.4e-7 - v.y;
+    return v.x <= eps ? t : fall > 0.0 ? t + (v.x - 0.5 * eps) / fall * 0.9999996 : FAR;
+}
+
+// nothing is nearer than r
+float ball(float t, float r, float eps) { return r <= eps ? t : t + r * 0.9999996; }
+
+// outside a convex function, from within: how far its tangent, or the end of its box, says to look ...
+float chord_reach(float t, vec2 v, float box_end, float eps) {
+    float depth = 3.0 * eps - v.x;
+    return clamp(v.y > 1e-6 ? depth / v.y : FAR, 0.0, max(box_end - t, 0.0));
+}
+
+// ... and how far is clear: all of it where its end is still within, else up to the chord's root
+float chord(float t, float value, float reach, float value_there, float eps) {
+    float depth = 3.0 * eps - value, depth_there = 3.0 * eps - value_there;
+    float clear = depth_there > 0.0 ? reach : reach * depth / max(depth - depth_there, 1e-30);
+    return depth <= eps ? t : t + max(clear, 0.5 * eps) * 0.9999996;
+}
+
+// a part that matters only inside a box
+float inside(vec2 box, float t, float next) { return t < box.x ? box.x : next < box.y ? next : FAR; }
+
+vec2 box_interval(vec3 o, vec3 d, vec3 half_size) {
+    vec3 safe = mix(d, vec3(1e-18), lessThan(abs(d), vec3(1e-18)));
+    vec3 middle = -o / safe, reach = half_size / abs(safe);
+    vec3 enters = middle - reach, leaves = middle + reach;
+    float first = max(max(enters.x, enters.y), enters.z), last = min(min(leaves.x, leaves.y), leaves.z);
+    return first < last ? vec2(first, last) : vec2(FAR, -FAR);
+}
+
+// Moves the origin along the ray to near the scene's, and returns how far. The products are exact (few digits each), so
+// that a far eye costs no accuracy (Dekker 1971).
+float rebase(inout vec3 o, vec3 d) {
+    float t = intBitsToFloat(floatBitsToInt(-dot(o, d)) & 0xFFFFE000);
+    vec3 head = intBitsToFloat(floatBitsToInt(d) & 0xFFFFF000);
+    o = (o + t * head) + t * (d - head);
+    return t;
+}
+
+// A box with rounded edges; `size` is of the whole.
+vec2 rounded_box_slope(vec3 p, vec3 d, vec3 size, float radius) {
+    vec3 q = abs(p) - size / 2.0 + radius;
+    vec3 q_2 = sign(sign(p) + 0.5) * d;
+    float d_2 = max(q.y, q.z);
+    float d_3 = max(q.x, d_2);
+    vec3 q_3 = max(q, 0.0);
+    float len = length(q_3);
+    float chosen = d_3 <= 0.0 ? (d_2 < q.x ? q_2.x : q.z < q.y ? q_2.y : q_2.z) : 0.0;
+    float sum = dot(q_3, q_2 * max(sign(q), 0.0)) / max(len, 1e-30) + chosen;
+    return vec2(len + min(d_3, 0.0) - radius, sum);
+}
+
+// A box with rounded edges; `size` is of the whole.
+float rounded_box(vec3 p, vec3 size, float radius) {
+    vec3 q = abs(p) - size / 2.0 + radius;
+    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0) - radius;
+}
+
+// A box with rounded edges; `size` is of the whole.
+vec4 rounded_box_surface(vec3 p, vec3 size, float radius) {
+    vec3 q = abs(p) - size / 2.0 + radius;
+    float d = max(q.y, q.z);
+    bool below = d < q.x;
+    float d_2 = max(q.x, d);
+    float chosen = d_2 <= 0.0 ? 1.0 : 0.0;
+    float chosen_2 = below ? 0.0 : chosen;
+    bool below_2 = q.z < q.y;
+    vec3 q_2 = max(q, 0.0);
+    float len = length(q_2);
+    vec3 q_3 = vec3(below ? chosen : 0.0, below_2 ? chosen_2 : 0.0, below_2 ? 0.0 : chosen_2);
+    vec3 q_4 = (q_2 * (1.0 / max(len, 1e-30)) * max(sign(q), 0.0) + q_3) * sign(sign(p) + 0.5);
+    return vec4(q_4.xyz, len + min(d_2, 0.0) - radius);
+}
+
+float map(vec3 p) {
+    vec3 q_rounded_box_1 = vec3(0.8660254 * p.x + (-0.5 * p.z), p.y, 0.5 * p.x + 0.8660254 * p.z);
+    return rounded_box(q_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), edge * 0.9886885);
+}
+
+// the first hit of what is marched, before `limit`
+float march(vec3 o, vec3 d, float start, float limit) {
+    int count = 0;
+    vec3 d_rounded_box_1 = vec3(0.8660254 * d.x + (-0.5 * d.z), d.y, 0.5 * d.x + 0.8660254 * d.z);
+    float t, next = start;
+    do {
+        t = next;
+        vec3 p = o + t * d;
+        float eps = tolerance(t), fine = rounding(t);
+        vec3 q_rounded_box_1 = vec3(0.8660254 * p.x + (-0.5 * p.z), p.y, 0.5 * p.x + 0.8660254 * p.z);
+        next = tangent(t, rounded_box_slope(q_rounded_box_1, d_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), edge * 0.9886885), fine);
+        steps += 1.0;
+        count += 1;
+    } while (next > t && next < limit && count < MOST_STEPS);
+    return next > t && next >= limit ? FAR : t;
+}
+
+// requires: events or march (generated)
+// provides: trace, the first hit at or after `start` and before `limit`, or FAR
+float trace(vec3 o, vec3 d, float start, float limit) {
+    float first = FAR;
+    first = min(first, march(o, d, start, min(first, limit)));
+    return first < limit ? first : FAR;
+}
+
+struct Surface {
+    vec4 field;  // gradient and value
+    float material;
+};
+
+Surface nearer(Surface a, Surface b) { if (b.field.w < a.field.w) return b; return a; }
+Surface farther(Surface a, Surface b) { if (b.field.w > a.field.w) return b; return a; }
+
+Surface unpainted_material(vec4 field) {
+    return Surface(field, 0.0);
+}
+
+Surface surface(vec3 p) {
+    vec3 q_rounded_box_1 = vec3(0.8660254 * p.x + (-0.5 * p.z), p.y, 0.5 * p.x + 0.8660254 * p.z);
+    vec4 g_rounded_box_1 = rounded_box_surface(q_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), edge * 0.9886885);  // test.sdf:2:9
+    float sum = -0.5 * g_rounded_box_1.x + 0.8660254 * g_rounded_box_1.z;
+    float sum_2 = 0.8660254 * g_rounded_box_1.x + 0.5 * g_rounded_box_1.z;
+    return unpainted_material(vec4(sum_2, g_rounded_box_1.y, sum, g_rounded_box_1.w));
+}
+
+// Radiance (VEC3) of the sky along a unit direction.
+vec3 sky_radiance(vec3 direction, vec3 up, vec3 zenith, vec3 horizon, vec3 ground) {
+    float d = clamp(dot(direction, up), -1.0, 1.0);
+    float d_2 = min(0.5 * (d + sqrt(d * d + 0.0001)), 1.0);
+    vec3 q = horizon + (zenith - horizon) * (d_2 * 1.17 / (d_2 + 0.17));
+    float ratio = (d + 0.34) / 0.15;
+    return q + (ground - q) * (0.5 - 0.5 * ratio / sqrt(1.0 + ratio * ratio));
+}
+
+// The sun's share (0 to 1) along a unit direction; `toward` is the unit direction of the sun.
+float sun_disc(vec3 direction, vec3 toward) {
+    float ratio = (1.0 - clamp(dot(direction, toward), -1.0, 1.0)) / 0.00015;
+    return min(clamp(2.5 - 2.0 * ratio, 0.0, 1.0) + 0.012 / (1.0 + 0.02 * ratio), 1.0);
+}
+
+// BRDF times n·l (VEC3). Unit vectors: normal, view (to the eye), light (to the light).
+vec3 reflect_light(vec3 normal, vec3 view, vec3 light, vec3 color, float metallic, float roughness) {
+    vec3 q = view + light;
+    vec3 q_2 = q / sqrt(max(dot(q, q), 1e-12));
+    float d = normal.y * q_2.z - normal.z * q_2.y;
+    vec3 q_3 = vec3(d, normal.z * q_2.x - normal.x * q_2.z, normal.x * q_2.y - normal.y * q_2.x);
+    float d_2 = clamp(roughness, 0.09, 1.0);
+    float product = d_2 * d_2;
+    float product_2 = clamp(dot(normal, q_2), 0.0, 1.0) * product;
+    float ratio = product / (dot(q_3, q_3) + product_2 * product_2 + 1e-12);
+    float product_3 = product * product;
+    float d_3 = 1.0 - product_3;
+    float d_4 = clamp(dot(normal, light), 0.0, 1.0);
+    float d_5 = clamp(dot(normal, view), 0.0001, 1.0);
+    float sum = d_5 * sqrt(d_4 * d_4 * d_3 + product_3) + d_4 * sqrt(d_5 * d_5 * d_3 + product_3);
+    float d_6 = clamp(1.0 - dot(view, q_2), 0.0, 1.0);
+    float product_4 = d_6 * d_6;
+    vec3 q_4 = clamp(color, 0.0, 1.0);
+    float d_7 = clamp(metallic, 0.0, 1.0);
+    vec3 q_5 = vec3(0.04) + (q_4 - vec3(0.04)) * d_7;
+    vec3 q_6 = q_5 + (vec3(1.0) - q_5) * (product_4 * product_4 * d_6);
+    float product_5 = (((56.543 * d_4 - 123.158) * d_4 + 76.425) * d_4 - 12.016) * d_2;
+    float product_6 = (product_5 + (((-122.696 * d_4 + 273.082) * d_4 - 176.513) * d_4 + 29.036)) * d_2;
+    float product_7 = (product_6 + (((82.835 * d_4 - 190.177) * d_4 + 130.466) * d_4 - 22.976)) * d_2;
+    float product_8 = product * (product_7 + (((-15.85 * d_4 + 38.325) * d_4 - 28.663) * d_4 + 6.033));
+    float d_8 = clamp(product_8, 0.0, 1.0);
+    float sum_2 = 2.6 + 2.4 / (1.0 + 125.0 * d_2 * product);
+    float sum_3 = 1.0 + product * (7.0 + 15.0 * d_2);
+    float sum_4 = 0.04 * (1.0 - d_8) + 0.96 * (pow(max(clamp(1.0 - d_4, 0.0, 1.0), 1e-7), sum_2) / sum_3);
+    float product_9 = (((56.543 * d_5 - 123.158) * d_5 + 76.425) * d_5 - 12.016) * d_2;
+    float product_10 = (product_9 + (((-122.696 * d_5 + 273.082) * d_5 - 176.513) * d_5 + 29.036)) * d_2;
+    float product_11 = (product_10 + (((82.835 * d_5 - 190.177) * d_5 + 130.466) * d_5 - 22.976)) * d_2;
+    float product_12 = product * (product_11 + (((-15.85 * d_5 + 38.325) * d_5 - 28.663) * d_5 + 6.033));
+    float d_9 = clamp(product_12, 0.0, 1.0);
+    float sum_5 = 0.04 * (1.0 - d_9) + 0.96 * (pow(max(clamp(1.0 - d_5, 0.0, 1.0), 1e-7), sum_2) / sum_3);
+    float product_13 = 3.1415927 * (1.0 - (((0.1146 * d_2 - 0.1774) * d_2 - 0.002) * d_2 + 0.0848));
+    vec3 q_7 = q_4 * (1.0 - d_7) * ((1.0 - sum_4) * (1.0 - sum_5) / product_13);
+    vec3 q_8 = q_5 * 0.95238096 + 0.04761905;
+    float sum_6 = (((4.3982 * d_2 - 11.227) * d_2 + 8.9283) * d_2 - 1.7301) * d_2 + 0.232;
+    float product_14 = product * sum_6;
+    vec3 q_9 = q_8 * q_8 * (1.0 - product_14) / (1.0 - q_8 * product_14);
+    vec3 q_10 = q_7 + q_6 * (ratio * ratio * 0.15915494 / sum);
+    return (q_10 + q_9 * (d_8 * d_9 / (3.1415927 * product_14))) * d_4;
+}
+
+// Ambient occlusion (1 is open) from distances at heights over the surface, lowest first, same unit.
+float occlusion_weight(vec4 distances, vec4 heights) {
+    vec4 q = distances / max(heights, 1e-12);
+    float product = 0.88 * dot(1.0 - clamp(q / clamp(q.x, 0.25, 1.0), 0.0, 1.0), vec4(0.1, 0.3, 0.33, 0.27));
+    return clamp(1.0 - product, 0.0, 1.0);
+}
+
+// Radiance (VEC3) from the sky; `occlusion` is 1 in the open and 0 where no sky is seen.
+vec3 ambient(vec3 normal, vec3 view, vec3 up, vec3 color, float metallic, float roughness, float occlusion, vec3 zenith, vec3 horizon, vec3 ground) {
+    float d = clamp(roughness, 0.09, 1.0);
+    float product = d * d;
+    float product_2 = 0.35 * product;
+    float product_3 = clamp(dot(normal * (2.0 * dot(view, normal)) - view, up), -1.0, 1.0) * (1.0 - product_2);
+    float sum = 0.01 + 0.4 * product;
+    float d_2 = min(0.5 * (product_3 + sqrt(product_3 * product_3 + sum * sum)), 1.0);
+    vec3 q = horizon + (zenith - horizon) * (d_2 * 1.17 / (d_2 + 0.17));
+    float ratio = (product_3 + 0.34 * (1.0 - product)) / (0.15 + product_2);
+    float d_3 = clamp(dot(normal, view), 0.0001, 1.0);
+    float product_4 = (((56.543 * d_3 - 123.158) * d_3 + 76.425) * d_3 - 12.016) * d;
+    float product_5 = (product_4 + (((-122.696 * d_3 + 273.082) * d_3 - 176.513) * d_3 + 29.036)) * d;
+    float product_6 = (product_5 + (((82.835 * d_3 - 190.177) * d_3 + 130.466) * d_3 - 22.976)) * d;
+    float product_7 = product * (product_6 + (((-15.85 * d_3 + 38.325) * d_3 - 28.663) * d_3 + 6.033));
+    float d_4 = clamp(product_7, 0.0, 1.0);
+    float d_5 = 1.0 - d_4;
+    float power = pow(max(clamp(1.0 - d_3, 0.0, 1.0), 1e-7), 2.6 + 2.4 / (1.0 + 125.0 * d * product));
+    float ratio_2 = power / (1.0 + product * (7.0 + 15.0 * d));
+    vec3 q_2 = clamp(color, 0.0, 1.0);
+    float d_6 = clamp(metallic, 0.0, 1.0);
+    vec3 q_3 = vec3(0.04) + (q_2 - vec3(0.04)) * d_6;
+    vec3 q_4 = q_3 * 0.95238096 + 0.04761905;
+    float sum_2 = (((4.3982 * d - 11.227) * d + 8.9283) * d - 1.7301) * d + 0.232;
+    float product_8 = product * sum_2;
+    vec3 q_5 = q_4 * q_4 * (1.0 - product_8) / (1.0 - q_4 * product_8) * d_4;
+    vec3 q_6 = q + (ground - q) * (0.5 - 0.5 * ratio / sqrt(1.0 + ratio * ratio));
+    float d_7 = clamp(occlusion, 0.0, 1.0);
+    float d_8 = clamp(pow(max(d_3 + d_7, 1e-7), exp(-11.09 * d - 0.693)) - 1.0 + d_7, 0.0, 1.0);
+    vec3 q_7 = q_2 * (1.0 - d_6);
+    float d_9 = clamp(dot(normal, up), -1.0, 1.0);
+    float sum_3 = ((0.0315 * d_9 * d_9 + 0.0461) * d_9 + 0.4485) * d_9 + 0.3687;
+    float sum_4 = ((0.0512 * d_9 * d_9 + 0.0794) * d_9 - 0.4207) * d_9 + 0.2954;
+    vec3 q_8 = zenith * sum_3 + ground * sum_4 + horizon * (1.0 - sum_3 - sum_4);
+    vec3 q_9 = ((2.0404 * q_7 - 0.3324) * d_7 + (-4.7951 * q_7 + 0.6417)) * d_7 + (2.7552 * q_7 + 0.6903);
+    vec3 q_10 = q_7 * (1.0 - (0.04 * d_5 + 0.96 * ratio_2)) * q_8 * max(vec3(1.0) * d_7, q_9 * d_7);
+    return q_10 + (q_3 * max(d_5 - ratio_2, 0.0) + ratio_2 + q_5) * q_6 * d_8;
+}
+
+// Linear radiance to linear 0 .. 1 (AgX).
+vec3 tone_map(vec3 color) {
+    vec3 q = max(color, 0.0) * 1.6;
+    float along = dot(vec3(0.042328242, 0.87846863, 0.07916613), q);
+    float along_2 = dot(vec3(0.84247905, 0.0784336, 0.079223745), q);
+    vec3 q_2 = log(max(vec3(along_2, along, dot(vec3(0.042375654, 0.0784336, 0.879143), q)), 1e-10));
+    vec3 q_3 = clamp((q_2 * 1.442695 + 12.47393) / 16.499998, 0.0, 1.0);
+    vec3 q_4 = (((15.5 * q_3 - 40.14) * q_3 + 31.96) * q_3 - 6.868) * q_3 + 0.4298;
+    vec3 q_5 = max(clamp(((q_4 * q_3 + 0.1191) * q_3 - 0.00232) / 0.99858, 0.0, 1.0), 1e-7);
+    vec3 q_6 = pow(q_5, vec3(1.5));
+    vec3 q_7 = vec3(1.0) * dot(q_6, vec3(0.2126, 0.7152, 0.0722));
+    vec3 q_8 = q_7 + (q_6 - q_7) * 1.3;
+    float along_3 = dot(vec3(-0.052896854, 1.1519032, -0.098961174), q_8);
+    float along_4 = dot(vec3(-0.052971635, -0.09804345, 1.1510737), q_8);
+    vec3 q_9 = max(vec3(dot(vec3(1.196879, -0.09802088, -0.09902974), q_8), along_3, along_4), 0.0);
+    return pow(max(min(q_9, 1.0), 1e-7), vec3(2.2));
+}
+
+// Linear 0 .. 1 to sRGB 0 .. 1.
+vec3 encode_srgb(vec3 color) {
+    vec3 q = clamp(color, 0.0, 1.0);
+    vec3 q_2 = 12.92 * q;
+    vec3 q_3 = 1.055 * pow(max(q, 1e-7), vec3(0.41666666)) - 0.055;
+    float chosen = q.x <= 0.0031308 ? q_2.x : q_3.x;
+    return vec3(chosen, q.y <= 0.0031308 ? q_2.y : q_3.y, q.z <= 0.0031308 ? q_2.z : q_3.z);
+}
+
+const vec3 UP = vec3(0.0, 1.0, 0.0);
+
+vec3 sky(vec3 d) { return sky_radiance(d, UP, vec3(0.21, 0.32, 0.52), vec3(0.86, 0.88, 0.91), vec3(0.23, 0.225, 0.22)); }
+
+// Light number `light` at a point: the way to it, how far it is, and its irradiance there.
+void light_at(int light, vec3 p, out vec3 toward, out float reach, out vec3 irradiance) {
+    {
+        toward = vec3(-0.12290758, 0.6691306, 0.73291063);
+        reach = FAR;
+        irradiance = vec3(4.4, 3.916, 3.256);
+    }
+}
+
+// How open the sky is over a point, from distances along the normal.
+float openness(vec3 p, vec3 normal) {
+    vec4 heights = vec4(0.012, 0.045, 0.11, 0.22), left = heights, distances = vec4(0.0);
+    int taps = 0;
+    do {
+        distances = vec4(distances.yzw, map(p + left.x * normal));
+        left = left.yzwx;
+        taps += 1;
+    } while (taps < 4);
+    return occlusion_weight(distances, heights);
+}
+
+// One loop, one call of trace: the ray of the eye first, then one to each light.
+vec4 radiance() {
+    vec3 o, d;
+    camera_ray(o, d);
+    travelled = rebase(o, d);
+    float start = -travelled, limit = FAR;
+    vec3 view = -d, p = vec3(0.0), normal = vec3(0.0), toward = vec3(0.0), irradiance = vec3(0.0), seen = vec3(0.0);
+    Surface s;
+    bool hit = false;
+    int light = -1;
+    do {
+        float t = trace(o, d, start, limit);
+        if (light < 0) {
+            hit = t < FAR;
+            p = o + t * d;
+            s = surface(hit ? p : vec3(0.0));
+            // at a point without a gradient (a cone's tip, a medial axis) the surface faces the eye
+            s.field.xyz = dot(s.field.xyz, s.field.xyz) > 1e-12 ? s.field.xyz : -d;
+            // one Newton step to the surface itself, off the skin that closes cracks and off the tolerance of marching
+            float steepness = length(s.field.xyz), slope = dot(s.field.xyz, d);
+            float most = 4.0 * tolerance(t) / clamp(steepness, 0.05, 1.0);
+            float correction = slope < -0.05 * steepness ? clamp(s.field.w / slope, -most, most) : 0.0;
+            t = hit ? max(t - correction, -travelled) : t;  // never behind the eye
+            p = o + t * d;
+            normal = normalize(s.field.xyz);
+            normal = dot(normal, view) > 0.0 ? normal : normalize(normal - 1.001 * dot(normal, view) * view);
+            travelled += t;
+        } else if (t >= limit) {
+            seen += irradiance * reflect_light(normal, view, toward, vec3(0.48), 0.0, 0.5);
+        }
+        light += 1;
+        // shadow rays start clear of the surface by more than it may be wrong (Keinert 2014, section 3.3)
+        o = p + max(7.6293945e-6, 4.0 * tolerance(0.0)) / clamp(length(s.field.xyz), 0.05, 1.0) * normal;
+        light_at(light, o, toward, limit, irradiance);
+        d = toward;
+        start = 0.0;
+    } while (hit && light < 1);
+    if (!hit) {
+        return vec4(sky(-view) + sun_disc(-view, vec3(-0.12290758, 0.6691306, 0.73291063)) * (vec3(4.4, 3.916, 3.256)), 0.0);
+    }
+    seen += ambient(normal, view, UP, vec3(0.48), 0.0, 0.5, openness(p, normal), vec3(0.21, 0.32, 0.52), vec3(0.86, 0.88, 0.91), vec3(0.23, 0.225, 0.22));
+    return vec4(seen + vec3(0.0), 1.0);
+}
+
+layout(location = 0) out vec4 color_out;  // sRGB
+
+void main() {
+    prepare();
+    color_out = vec4(encode_srgb(tone_map(radiance().rgb)), 1.0);
+}
