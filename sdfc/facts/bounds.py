@@ -17,6 +17,7 @@ from sdfc.shape.matrix import Matrix
 from sdfc.shape.stretch import smallest_stretch
 
 _EXACT_OUTSIDE = (Exactness.EXACT, Exactness.EXACT_OUTSIDE)
+_FARTHEST = 1e15
 
 
 class Bounds:
@@ -40,7 +41,7 @@ class Bounds:
                 stack.pop()
             elif key in opened:
                 children, below = opened.pop(key)
-                self._boxes[key] = self._box(node, at, [self._boxes[c.id, below] for c in children])
+                self._boxes[key] = _usable(self._box(node, at, [self._boxes[c.id, below] for c in children]))
                 stack.pop()
             else:
                 opened[key] = children, below = self._asked(node, at)
@@ -153,6 +154,16 @@ class Bounds:
         lo, hi = bounds(node.environment, child_facts(self.values, node, boxes), self.values.constant(level))
         lows, highs = self._ranges.bounds([lo])[0], self._ranges.bounds([hi])[1]
         return _box_of(lows, highs)
+
+
+def _usable(box: Box) -> Box:
+    """Without bounds beyond what float32 can square: nests of turned boxes double without end."""
+    if all(a >= -_FARTHEST and b <= _FARTHEST for a, b in zip(box.lo, box.hi, strict=True)):
+        return box
+    return Box(
+        tuple([a if a >= -_FARTHEST else -math.inf for a in box.lo]),
+        tuple([b if b <= _FARTHEST else math.inf for b in box.hi]),
+    )
 
 
 def _hull(boxes: Sequence[Box]) -> Box:

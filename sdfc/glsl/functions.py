@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
@@ -80,7 +81,7 @@ class Functions:
             arguments, formal, label, parametric = (), (), name, shape
             key = (shape.id, role)
         if key not in self._by_key:
-            self._by_key[key] = self._made(parametric, role, self.names.fresh(label + role.value), formal)
+            self._by_key[key] = self._made(parametric, role, self._fresh(label + role.value), formal)
         return Call(self._by_key[key].name, arguments)
 
     def joined(self, blend: Apply) -> Call:
@@ -105,8 +106,12 @@ class Functions:
                 slopes = [directional(result, {a: one}), directional(result, {b: one})]
                 result = self._graph.vector(*slopes, result)
             formal = (("a", Type.FLOAT), ("b", Type.FLOAT), *((p.name, _TYPES[p.kind]) for p in definition.values))
-            self._by_key[key] = Function(self.names.fresh(definition.name + role.value), formal, result, definition.doc)
+            self._by_key[key] = Function(self._fresh(definition.name + role.value), formal, result, definition.doc)
         return Call(self._by_key[key].name, tuple(a for a in blend.arguments if isinstance(a, Expr)))
+
+    def _fresh(self, wanted: str) -> str:
+        """A name for a function: never one like those that generated variables have (box_1, s2)."""
+        return self.names.fresh(f"{wanted}_field" if re.search(r"_\d+$|^s\d+$", wanted) else wanted)
 
     def _input(self, name: str, kind: Kind) -> Expr:
         return self._graph.input(name, _TYPES[kind])

@@ -55,9 +55,10 @@ sky sky_radiance steps sun_disc surface tangent tolerance tone_map trace transmi
 """
 
 # Locals of templates and of generated statements: no function and no local of an expression may take these.
-LOCALS = tuple(
-    "o d p q t next near far eps fine first start limit count steps field light hit view normal toward".split()
-)
+_LOCALS = """
+o d p q t next near far eps fine first start limit count steps field light hit view normal toward
+"""
+LOCALS = tuple(_LOCALS.split())
 
 RESERVED = frozenset(_KEYWORDS.split()) | frozenset(_FUNCTIONS.split()) | frozenset(_TEMPLATES.split())
 

@@ -15,14 +15,6 @@ def negate(root: Shape, graph: ShapeGraph, definition: Lookup) -> Shape:
     """Afterwards a Complement stands only on a leaf: a primitive or an operation without a dual, placed and painted or
     not, or Nothing. `definition` finds the dual of a blend by name."""
 
-    def dual_of(shape: Shape) -> Definition | None:
-        match shape:
-            case Apply():
-                dual = shape.definition.claims.dual
-                return None if dual is None else definition(dual)
-            case _:
-                return None
-
     def below(shape: Shape, negative: bool) -> list[tuple[Shape, bool]]:
         match shape:
             case Complement():
@@ -30,7 +22,7 @@ def negate(root: Shape, graph: ShapeGraph, definition: Lookup) -> Shape:
             case Union() | Intersection():
                 return [(c, negative) for c in shape.children]
             case _:
-                inner = negative and dual_of(shape) is not None
+                inner = negative and _dual(shape, definition) is not None
                 return [(c, inner) for c in children_of(shape)]
 
     def make(shape: Shape, negative: bool, children: tuple[Shape, ...]) -> Shape:
@@ -42,7 +34,7 @@ def negate(root: Shape, graph: ShapeGraph, definition: Lookup) -> Shape:
             case Intersection() if negative:
                 return graph.union(children, shape.span)
             case Apply() if negative:
-                dual = dual_of(shape)
+                dual = _dual(shape, definition)
                 if dual is not None:
                     return graph.apply(dual, shape.arguments, children, shape.span)
             case _:
@@ -51,3 +43,12 @@ def negate(root: Shape, graph: ShapeGraph, definition: Lookup) -> Shape:
         return graph.complement(kept, shape.span) if negative else kept
 
     return descend(root, False, below, make)
+
+
+def _dual(shape: Shape, definition: Lookup) -> Definition | None:
+    match shape:
+        case Apply():
+            dual = shape.definition.claims.dual
+            return None if dual is None else definition(dual)
+        case _:
+            return None

@@ -36,6 +36,8 @@ from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
 from sdfc.shape.stretch import largest_stretch, smallest_stretch
 
+_OURS = frozenset({"bounds", "solid", "live", "joined", "near", "far"})  # generated names begin so, and end in a number
+
 
 @dataclass(frozen=True, slots=True)
 class Leaf:
@@ -202,6 +204,7 @@ class Prover:
         key = (leaf.placed.id, id(leaf.material))
         if key not in self._parts:
             name = leaf.shape.definition.name
+            name = f"{name}_part" if name in _OURS else name
             self._names[name] += 1
             self._leaves.append(leaf)
             self._parts[key] = self._part(leaf, f"{name}_{self._names[name]}")

@@ -168,3 +168,12 @@ def test_an_enclosure_holds_for_every_value_of_the_params() -> None:
     free = world.apply("free", size=world.values.param("size"))
     check_boxes(world, free, 4)
     assert 1.4 <= world.bounds.box(free).hi[0] <= 1.6
+
+
+def test_a_box_that_float32_cannot_hold_is_none() -> None:
+    world = World()
+    shape = world.apply("sphere", radius=0.5)
+    for _ in range(300):
+        shape = world.apply("twist", shape)
+    box = world.bounds.box(shape)
+    assert box.hi[0] == math.inf and box.hi[1] == 0.5

@@ -57,10 +57,11 @@ def template_words() -> set[str]:
     return words - {"main"}
 
 
+_QUALIFIERS = r"(?:[a-z]+\([^)]*\)\s*)?(?:(?:const|uniform|noperspective|flat|in|out|writeonly)\s+)*"
 _TYPE = r"(?:void|float|int|bool|vec[234]|ivec[234]|mat[234]|image2D|Surface)"
 
 
 def _defined(line: str) -> set[str]:
-    found = re.match(rf"\s*(?:[a-z]+\([^)]*\)\s*)?(?:(?:const|uniform|noperspective|flat|in|out|writeonly)\s+)*{_TYPE}\s+(\w+)\s*[(;=\[]", line)
+    found = re.match(rf"\s*{_QUALIFIERS}{_TYPE}\s+(\w+)\s*[(;=\[]", line)
     struct = re.match(r"\s*struct\s+(\w+)", line)
     return {match.group(1) for match in (found, struct) if match}

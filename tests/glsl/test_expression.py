@@ -24,7 +24,7 @@ from sdfc.field.function import Function
 from sdfc.field.graph import BINARY, COMPARISON, LEAVES, LOGIC, UNARY, Expr, FieldGraph, Op, Type
 from sdfc.field.numeric import Evaluator
 from sdfc.glsl.expression import DEPTH, WIDTH, Printer, print_function
-from sdfc.glsl.names import RESERVED, Names, identifier, literal, type_name
+from sdfc.glsl.names import RESERVED, Names, identifier, literal, param_name, type_name
 
 PARAMETERS = tuple(INPUTS.items())
 NUMBERS = [0.0, 1.0, 0.1, -2.5, 1 / 3, 1e20, 1e-7, 3.4028234663852886e38, 1e-45, 123456789.0, 16777216.0, 100.0, 5e-324]
@@ -95,7 +95,7 @@ def test_a_box_reads_as_people_write_it() -> None:
         "// It is rounded.\n"
         "float box(vec3 p, vec3 half_) {\n"
         "    vec3 q = abs(p) - half_;\n"
-        "    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0) - rounding;\n"
+        "    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0) - param_rounding;\n"
         "}\n"
     )
 
@@ -107,7 +107,7 @@ def idioms(graph: FieldGraph) -> list[tuple[Expr, str]]:
     call = graph.call
     return [
         (graph.clamp(t, 0.0, 1.0), "clamp(t, 0.0, 1.0)"),
-        (graph.clamp(p, -size, size), "clamp(p, -size, size)"),
+        (graph.clamp(p, -size, size), "clamp(p, -param_size, param_size)"),
         (graph.min(graph.max(t, y), x), "min(max(t, p.y), p.x)"),
         (graph.min(graph.max(t, 1.0), 0.0), "min(max(t, 1.0), 0.0)"),
         (graph.vector(y, z, x), "p.yzx"),
@@ -224,8 +224,8 @@ def test_a_parameter_gives_way_to_a_uniform_of_the_same_name() -> None:
     graph = FieldGraph()
     radius = graph.length(graph.input("p")) - graph.input("radius", Type.FLOAT) - graph.param("radius")
     text = print_function(Function("sphere", (("p", Type.VEC3), ("radius", Type.FLOAT)), radius))
-    assert text.splitlines()[0] == "float sphere(vec3 p, float radius_2) {"
-    assert "length(p) - radius_2 - radius" in text
+    assert text.splitlines()[0] == "float sphere(vec3 p, float radius) {"
+    assert "length(p) - radius - param_radius" in text
 
 
 def test_the_printer_uses_what_has_a_name() -> None:
@@ -267,7 +267,7 @@ def test_printing_needs_no_numpy() -> None:
 
 def shader(functions: list[Function], version: str) -> str:
     precision = "precision highp float;\n" if version.endswith("es") else ""
-    uniforms = "".join(f"uniform {type_name(t)} {name};\n" for name, t in PARAMS.items())
+    uniforms = "".join(f"uniform {type_name(t)} {param_name(name)};\n" for name, t in PARAMS.items())
     texts = "\n".join(print_function(f) for f in functions)
     return (
         f"#version {version}\n{precision}{uniforms}\n{texts}\nout vec4 colour;\nvoid main() {{ colour = vec4(1.0); }}\n"

@@ -72,16 +72,17 @@ def renderer() -> Iterator[GlRenderer]:
 
 
 # words of GLSL, of the templates, of the generated text, and of the standard library
-WORDS = (
-    "steps box cone main ambient map trace surface march events first next near far t o d p q eps start limit count"
-    " field sphere radius eye pixel texture sample vec3 discard float live_1 solid_1 s1 s2 q_box_1 o_box_1 box_1"
-    " box_surface box_ray sphere_1 unpainted unpainted_material Surface gl_Position CENTRE travelled tau grow"
-    " bounds_1 v_torus_1 torus_1 joined_1 set_eye meet_sphere sphere_table sphere_at both inside painted"
-).split()
+_WORDS = """
+steps box cone main ambient map trace surface march events first next near far t o d p q eps start limit count
+field sphere radius eye pixel texture sample vec3 discard float live_1 solid_1 s1 s2 q_box_1 o_box_1 box_1
+box_surface box_ray sphere_1 unpainted unpainted_material Surface gl_Position CENTRE travelled tau grow
+bounds_1 v_torus_1 torus_1 joined_1 set_eye meet_sphere sphere_table sphere_at both inside painted
+"""
+WORDS = _WORDS.split()
 
 
 def accepted(compiled: Compiled, renderer: GlRenderer) -> None:
-    shot = Shot(compiled, View(), {}, (16, 9))
+    shot = Shot(compiled, View(), {}, (96, 9))
     renderer.radiance(shot, 0, None)
     assert renderer.probe(shot, None)[0][..., 3].any()
 
@@ -102,7 +103,7 @@ def test_any_word_names_a_field_and_its_parameters(renderer: GlRenderer) -> None
     usable = [w for w in WORDS if _is_a_name(f"field {w}(r: length) = length(p) - r")]
     assert len(usable) > 20
     text = "".join(f"field {w}(r: length) = length(p) - r bounds -[r, r, r] .. [r, r, r]\n" for w in usable)
-    uses = " ".join(f"{w}(r: 0.3).translate([{i}, 0, 0])" for i, w in enumerate(usable))
+    uses = " ".join(f"{w}(r: 0.3).translate([0.6 * {i}, 0, 0])" for i, w in enumerate(usable))
     accepted(compiled_text(f"{text}scene {{ {uses} }}"), renderer)
     words = [w for w in WORDS if _is_a_name(f"field ball({w}: length) = length(p) - {w}")]
     for word in words[::3]:

@@ -55,7 +55,8 @@ def table(count: int, seed: int) -> str:
     """More than 48 spheres of one union: rows of a table."""
     return (
         f"union(for i in 0..{count}: sphere(radius: 0.05 + 0.03 * fract(0.37 * i + 0.1 * {seed})).translate("
-        f"[1.6 * fract(0.7548 * i + 0.2 * {seed}) - 0.8, 1.6 * fract(0.5698 * i) - 0.8, 1.6 * fract(0.3247 * i) - 0.8]))"
+        f"[1.6 * fract(0.7548 * i + 0.2 * {seed}) - 0.8, 1.6 * fract(0.5698 * i) - 0.8,"
+        " 1.6 * fract(0.3247 * i) - 0.8]))"
     )
 
 

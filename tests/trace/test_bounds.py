@@ -48,14 +48,14 @@ LARGE = {
 
 
 def most_turns(compiled: Compiled) -> int:
-    """The loop turns of a pixel of the picture, at worst: each ray with all its steps, and the taps of the ambient light."""
+    """The loop turns of a pixel of the picture, at worst: its rays with all their steps, and the ambient light."""
     text = compiled.glsl("picture")
     found = re.search(r"const int MOST_STEPS = (\d+);", text)
     march = int(found.group(1)) if found and "float march(" in text else 0
     blends = sum(isinstance(leaf, Blend) for leaf in leaves_of(compiled.plan.root))
     plan, rays = compiled.plan, 1 + len(compiled.setting.lights)
-    a_ray = plan.rows + plan.events + march * (1 + 4 * blends)
-    return rays * (1 + a_ray) + 4 * (1 + plan.rows)
+    a_ray = plan.table_turns + plan.events + march * (1 + 4 * blends)
+    return rays * (1 + a_ray) + 4 * (1 + plan.table_turns)
 
 
 @pytest.mark.parametrize("name", LARGE)

@@ -56,7 +56,8 @@ def test_nothing_missed_and_nothing_invented(plain: Picture, is_full: bool) -> N
     sure = ~truth.contested
     both = sure & truth.hit & picture.hit
     error = np.abs(picture.depth - truth.t)[both]
-    print(f"csg5: {both.sum()} hits, {(~sure).sum()} contested, |dt| median {np.median(error):.1e}, max {error.max():.1e}")
+    spread = f"|dt| median {np.median(error):.1e}, max {error.max():.1e}"
+    print(f"csg5: {both.sum()} hits, {(~sure).sum()} contested, {spread}")
     assert (sure & (truth.hit != picture.hit)).sum() == 0
     assert (~sure).sum() < 200
     assert np.median(error) < 2e-7
@@ -69,7 +70,9 @@ def test_nothing_missed_and_nothing_invented(plain: Picture, is_full: bool) -> N
     [(0.01, (0, 0, 0)), (100.0, (0, 0, 0)), (1.0, (1e5, 0, 0)), (1.0, (1e5, -1e5, 3e4)), (1e-4, (7, 8, 9))],
     ids=str,
 )
-def test_neither_place_nor_size_matters(factor: float, by: tuple[float, float, float], tracing: Tracing, plain: Picture) -> None:
+def test_neither_place_nor_size_matters(
+    factor: float, by: tuple[float, float, float], tracing: Tracing, plain: Picture
+) -> None:
     picture, _ = drawn(tracing, factor, by)
     changed = (picture.hit != plain.hit).sum()
     both = picture.hit & plain.hit

@@ -32,7 +32,11 @@ class Pair:
 
 
 BLOCK = "box(size: [1, 1, 1])"
-SOFT = "box(size: [1, 1, 1], radius: 0.1)".replace("box(", "rounded_box(")
+POINTED = "cone(radius: 0.5, height: 0.6).translate([0, 0.3, 0])"
+POST = "cylinder(radius: 0.5, height: 0.5).translate([0, -0.25, 0])"
+BORE = "cylinder(radius: 0.3, height: {h})"
+RING = "torus(major: 0.7, minor: 0.3)"
+SOFT = "rounded_box(size: [1, 1, 1], radius: 0.1)"
 TWISTED = f"{BLOCK}.twist(40deg)"
 HALF = "box(size: [3, 1, 3]).translate([0, {y}, 0])"
 
@@ -80,11 +84,10 @@ PAIRS = [
     ),
     Pair(
         "a cone whose base is the end of a cylinder",
-        "cone(radius: 0.5, height: 0.6).translate([0, 0.3, 0]) | cylinder(radius: 0.5, height: 0.5).translate([0, -0.25, 0])",
-        "cone(radius: 0.5, height: 0.6).translate([0, 0.3, 0]) | cylinder(radius: 0.5, height: 0.5).translate([0, -0.25, 0])"
-        " | cylinder(radius: 0.4, height: 0.2)",
+        f"{POINTED} | {POST}",
+        f"{POINTED} | {POST} | cylinder(radius: 0.4, height: 0.2)",
     ),
-    Pair("soft box, flush hole", f"{SOFT} - cylinder(radius: 0.3, height: 1)", f"{SOFT} - cylinder(radius: 0.3, height: 3)"),
+    Pair("soft box, flush hole", f"{SOFT} - {BORE.format(h=1)}", f"{SOFT} - {BORE.format(h=3)}"),
     Pair(
         "twisted box, flush hole",
         f"{TWISTED} - cylinder(radius: 0.3, height: 1)",
@@ -92,8 +95,8 @@ PAIRS = [
     ),
     Pair(
         "halves of a torus",
-        f"(torus(major: 0.7, minor: 0.3) & {HALF.format(y=0.5)}) | (torus(major: 0.7, minor: 0.3) - {HALF.format(y=0.5)})",
-        "torus(major: 0.7, minor: 0.3)",
+        f"({RING} & {HALF.format(y=0.5)}) | ({RING} - {HALF.format(y=0.5)})",
+        RING,
         3e-5,
     ),
     Pair(
@@ -103,7 +106,7 @@ PAIRS = [
     ),
     Pair(
         "a box less a soft plug of its own height",
-        f"{BLOCK} - rounded_cylinder(radius: 0.3, height: 1, rounding: 0).translate([0, 0, 0])",
+        f"{BLOCK} - rounded_cylinder(radius: 0.3, height: 1, rounding: 0)",
         f"{BLOCK} - cylinder(radius: 0.3, height: 3)",
         3e-5,
     ),

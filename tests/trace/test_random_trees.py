@@ -47,7 +47,7 @@ def check(text: str, view: View, tracing: Tracing, most: int = 400) -> None:
 
 
 @settings(
-    max_examples=400 if FULL else 25,
+    max_examples=400 if FULL else 12,
     deadline=None,
     derandomize=not FULL,
     phases=(Phase.explicit, Phase.generate, *((Phase.shrink,) if FULL else ())),
@@ -56,7 +56,7 @@ def check(text: str, view: View, tracing: Tracing, most: int = 400) -> None:
 @given(text=scenes(), view=st.sampled_from(VIEWS))
 def test_random_scenes(text: str, view: View, tracing: Tracing) -> None:
     note(text)
-    check(text, view, tracing, 400 if FULL else 150)
+    check(text, view, tracing, 400 if FULL else 60)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -65,10 +65,12 @@ def test_each_kind_alone_and_cut_by_each(kind: str, tracing: Tracing) -> None:
     for shape in KINDS[kind]:
         parts = [f"({shape}).translate([-1, 0, 0])", f"(({shape}) - cylinder(radius: 0.2, height: 3).rotate(x: 70deg))"]
         parts.append(f"(box(size: [1.3, 1.1, 0.9]) - ({shape}).shear(xy: 0.3)).translate([1.2, 0, 0])")
-        check("scene { " + " ".join(parts) + " }", VIEWS[0], tracing, 200 if FULL else 60)
+        check("scene { " + " ".join(parts) + " }", VIEWS[0], tracing, 200 if FULL else 24)
 
 
-@settings(max_examples=200 if FULL else 30, deadline=None, derandomize=not FULL, suppress_health_check=list(HealthCheck))
+@settings(
+    max_examples=200 if FULL else 30, deadline=None, derandomize=not FULL, suppress_health_check=list(HealthCheck)
+)
 @given(text=scenes(), seed=st.integers(0, 2**31))
 def test_the_passes_keep_the_sign(text: str, seed: int) -> None:
     """The normal form is the scene: the same sign at every point that is not at its surface."""
@@ -91,8 +93,8 @@ def test_many_and_cut(tracing: Tracing) -> None:
     assert isinstance(compiled.plan.root, Many) or any(isinstance(s, Many) for s in compiled.plan.root.steps)
     assert len(leaves_of(compiled.plan.root)) == 64
     for extra in ("", "torus(major: 0.6, minor: 0.1)", "box(size: [0.5, 0.5, 0.5]) - sphere(radius: 0.3)"):
-        check("scene { " + table(64, 1) + " " + extra + " }", VIEWS[0], tracing, 60)
-    check("scene { (" + table(60, 2) + ") - box(size: [1, 1, 1]) }", VIEWS[1], tracing, 40)
-    check("scene { " + table(60, 2).replace("sphere(radius: ", "box(size: [1, 1.4, 0.6] * ") + " }", VIEWS[1], tracing, 60)
-
-
+        check("scene { " + table(64, 1) + " " + extra + " }", VIEWS[0], tracing, 20)
+    check("scene { (" + table(60, 2) + ") - box(size: [1, 1, 1]) }", VIEWS[1], tracing, 20)
+    check(
+        "scene { " + table(60, 2).replace("sphere(radius: ", "box(size: [1, 1.4, 0.6] * ") + " }", VIEWS[1], tracing, 20
+    )
