@@ -44,12 +44,14 @@ class Motions:
     def after(self, outer: Motion, inner: Affine) -> Motion:
         """`inner`'s map, then `outer`."""
         match outer:
-            case Fixed() if inner.forward.is_constant and inner.inverse.is_constant:
+            case Fixed():
                 there, back = _numbers(inner.forward), _numbers(inner.inverse)
-                return Fixed(_composed(outer.forward, there), _composed(back, outer.inverse))
-            case _:
-                forward, inverse = self.matrices(outer)
-                return Live(forward.after(inner.forward), inner.inverse.after(inverse))
+                if there is not None and back is not None:
+                    return Fixed(_composed(outer.forward, there), _composed(back, outer.inverse))
+            case Live():
+                pass
+        forward, inverse = self.matrices(outer)
+        return Live(forward.after(inner.forward), inner.inverse.after(inverse))
 
     def matrices(self, motion: Motion) -> tuple[Matrix, Matrix]:
         """The map and its inverse."""
@@ -96,8 +98,14 @@ class Motions:
         return made
 
 
-def _numbers(given: Matrix) -> Numbers:
-    return tuple([e.number for e in given.entries])
+def _numbers(given: Matrix) -> Numbers | None:
+    """The entries of a constant map."""
+    first, second, third = given.linear
+    entries = (*first, *second, *third, *given.offset)
+    for entry in entries:
+        if not entry.is_constant:
+            return None
+    return tuple([entry.number for entry in entries])
 
 
 def _tidy(entry: float) -> float:

@@ -27,6 +27,7 @@ class _Placer:
         self._values = values
         self._motions = Motions(values)
         self._pointwise: dict[tuple[object, ...], bool] = {}
+        self._products: dict[tuple[Argument, float], Argument] = {}
 
     def below(self, shape: Shape, motion: Motion) -> list[tuple[Shape, Motion]]:
         match shape:
@@ -59,13 +60,13 @@ class _Placer:
         scale = self._scale_for_children(shape, motion)
         if scale is None:
             return self._moved(self._graph.with_children(shape, children), motion)
-        return self._graph.apply(shape.definition, _scaled(shape, scale), children, shape.span)
+        return self._graph.apply(shape.definition, self._scaled(shape, scale), children, shape.span)
 
     def _primitive(self, shape: Apply, motion: Motion) -> Shape:
         scale = self._scale(shape, motion)
         if scale is None or scale == 1.0:
             return self._moved(shape, motion)
-        scaled = self._graph.apply(shape.definition, _scaled(shape, scale), (), shape.span)
+        scaled = self._graph.apply(shape.definition, self._scaled(shape, scale), (), shape.span)
         return self._moved(scaled, self._motions.unscaled(motion, scale, shape.dimension))
 
     def _scale(self, shape: Apply, motion: Motion) -> float | None:
@@ -88,14 +89,16 @@ class _Placer:
         forward, inverse = self._motions.matrices(motion)
         return self._graph.affine(forward, inverse, inner, inner.span)
 
+    def _scaled(self, shape: Apply, scale: float) -> tuple[Argument, ...]:
+        """The arguments, lengths times the scale."""
+        if scale == 1.0:
+            return shape.arguments
+        pairs = zip(shape.definition.values, shape.arguments, strict=True)
+        return tuple([self._times(a, scale) if p.kind.is_length else a for p, a in pairs])
 
-def _scaled(shape: Apply, scale: float) -> tuple[Argument, ...]:
-    """The arguments, lengths times the scale."""
-    if scale == 1.0:
-        return shape.arguments
-    pairs = zip(shape.definition.values, shape.arguments, strict=True)
-    return tuple([_times(a, scale) if p.kind.is_length else a for p, a in pairs])
-
-
-def _times(argument: Argument, scale: float) -> Argument:
-    return tuple([e * scale for e in argument]) if isinstance(argument, tuple) else argument * scale
+    def _times(self, argument: Argument, scale: float) -> Argument:
+        """Remembered: parts that are alike are many."""
+        if (argument, scale) not in self._products:
+            made = tuple([e * scale for e in argument]) if isinstance(argument, tuple) else argument * scale
+            self._products[argument, scale] = made
+        return self._products[argument, scale]

@@ -37,6 +37,9 @@ def largest_stretch(matrix: Matrix, dimension: int = 3) -> Expr:
 
 def scale_of(rows: Rows) -> float | None:
     """The factor by which a map of plain numbers stretches all directions, or None where they differ."""
+    factor = rows[0][0]
+    if all(entry == (factor if i == j else 0.0) for i, row in enumerate(rows) for j, entry in enumerate(row)):
+        return abs(factor) if 0.0 < abs(factor) < math.inf else None  # most maps: nothing is turned
     columns = list(zip(*rows, strict=True))
     first = columns[0]
     square = _dot(first, first)

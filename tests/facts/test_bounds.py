@@ -105,7 +105,8 @@ def test_a_box_for_one_level_is_no_box_for_others() -> None:
 def test_the_box_of_a_negative_level_is_right_for_every_scale() -> None:
     world = World()
     size = world.values.param("size")
-    grown = world.moved(scaling(world.values, size, size, size), world.apply("sphere", radius=0.9))
+    radii = world.values.constant(0.9, 0.9, 0.9)
+    grown = world.moved(scaling(world.values, size, size, size), world.apply("ellipsoid", radii=radii))
     check_boxes(world, grown, 2, (-0.8, -0.3))
 
 

@@ -124,7 +124,7 @@ def test_all_passes_after_each_other(data: st.DataObject, seed: int) -> None:
 @given(data=st.data(), seed=seeds)
 def test_fields_are_the_same_where_maps_are_similarities(data: st.DataObject, seed: int) -> None:
     world = World()
-    shape = data.draw(solids(world, Menu(maps=("translate", "rotate", "scale", "mirror"), live=False)))
+    shape = data.draw(solids(world, Menu(maps=("translate", "rotate", "scale", "mirror"), live=False, nothing=False)))
     after = place(shape, world.shapes, world.values)
     points = points_around(np.random.default_rng(seed), 500)
     assert np.allclose(world.value(shape, points, {}), world.value(after, points, {}), rtol=1e-9, atol=1e-9)
