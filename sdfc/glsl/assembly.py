@@ -21,7 +21,6 @@ from sdfc.glsl.proven import ProvenWriter, TraceText
 from sdfc.glsl.surface import SurfaceWriter
 from sdfc.plan.plan import CUT, FINE, GROW, HORIZON, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, Plan
 from sdfc.plan.setting import Setting
-from sdfc.plan.steps import Blend, leaves_of
 from sdfc.scene.model import Param
 from sdfc.shade.ambient import OCCLUSION_HEIGHTS
 from sdfc.shade.functions import FUNCTIONS
@@ -153,11 +152,10 @@ class _Assembly:
 
     def _most_steps(self) -> int:
         """So many marching steps a ray that all loops of an invocation stay below llvmpipe's silent limit."""
-        blends = sum(isinstance(leaf, Blend) for leaf in leaves_of(self._plan.root))
         rays = 1 + (len(self._setting.lights) if self._lit else 0)
         taps = 4 if self._lit else 0
         free = (MOST_LOOPS - (rays + taps) * self._plan.table_turns) // rays - 2 * self._plan.events
-        return max(16, min(2048, free // (1 + 5 * blends)))
+        return max(16, min(2048, free))
 
     def _header(self) -> list[str]:
         tracer = self._plan.tracer

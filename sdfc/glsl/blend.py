@@ -94,24 +94,27 @@ class BlendWriter:
 
 
 # Two bounds close in on the root of the concave function: a chord crosses before it, the line through two points on
-# the left crosses after it. The left one is proven, and is the step.
-_CLEAR = """// how far ahead the blend of the operands' lines stays above `level`
+# the left crosses after it. The left one is proven (what puts its value below the level is rounding), and is the step.
+# Three rounds, written out: LLVM's time doubles with every loop of a shader (measured on llvmpipe).
+_CLEAR = """// how far ahead the blend of the operands' lines stays above `level`: left and right of the root, and their values
+void {name}_closer(inout vec4 bracket, float level, {formal}) {{
+    if (bracket.w > 0.0) return;  // the right end is left of the root by rounding: there is nothing to gain
+    float left = bracket.x, left_value = bracket.z;
+    float chord = left + (bracket.y - left) * left_value / max(left_value - bracket.w, 1e-30);
+    float at_chord = {name}_ahead(chord, {actual}) - level;
+    float beyond = chord + (chord - left) * at_chord / max(left_value - at_chord, 1e-30);
+    bool closer = at_chord > 0.0 && left_value > at_chord && beyond < bracket.y;
+    float right = closer ? beyond : bracket.y;
+    bracket = vec4(chord, right, max(at_chord, 0.0), closer ? {name}_ahead(right, {actual}) - level : bracket.w);
+}}
 float {name}_clear(float value, float level, {formal}) {{
-    float left = 0.0, left_value = value - level;
-    float right = left_value * 4.0 + 1.0, right_value = {name}_ahead(right, {actual}) - level;
-    if (right_value > 0.0) return right;
-    for (int i = 0; i < 4; i++) {{
-        float chord = left + (right - left) * left_value / max(left_value - right_value, 1e-30);
-        float at_chord = {name}_ahead(chord, {actual}) - level;
-        float beyond = chord + (chord - left) * at_chord / max(left_value - at_chord, 1e-30);
-        bool closer = at_chord > 0.0 && left_value > at_chord && beyond < right;
-        left = chord;  // proven: what puts its value below the level is rounding
-        left_value = max(at_chord, 0.0);
-        right = closer ? beyond : right;
-        right_value = closer ? {name}_ahead(beyond, {actual}) - level : right_value;
-        if (right_value > 0.0) return left;
-    }}
-    return left * 0.9999996;
+    vec4 bracket = vec4(0.0, 4.0 * (value - level) + 1.0, value - level, 0.0);
+    bracket.w = {name}_ahead(bracket.y, {actual}) - level;
+    if (bracket.w > 0.0) return bracket.y;
+    {name}_closer(bracket, level, {actual});
+    {name}_closer(bracket, level, {actual});
+    {name}_closer(bracket, level, {actual});
+    return bracket.x * 0.9999996;
 }}
 """
 

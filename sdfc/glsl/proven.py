@@ -85,6 +85,7 @@ class ProvenWriter:
     def _events(self, components: list[Step]) -> None:
         body = Body(self._live)
         body.add("float first = FAR;")
+        solids: list[Step] = []
         for component in components:
             match component:
                 case Closed(inside=True):
@@ -93,29 +94,39 @@ class ProvenWriter:
                 case Many():
                     self._many.meet(component, body)
                 case _:
-                    body.add(f"first = min(first, {self._solid(component)}(o, d, start));")
+                    solids.append(component)
+        if solids:
+            self._solids(solids)
+            body.add("first = min(first, solids(o, d, start));")
         body.add("return first;")
         self._function(
             "float events(vec3 o, vec3 d, float start)", body, "the first hit of what is solved in closed form"
         )
 
-    def _solid(self, component: Step) -> str:
-        self._count += 1
-        name = f"solid_{self._count}"
+    def _solids(self, components: list[Step]) -> None:
+        """One loop for all: LLVM's time doubles with every loop of a shader (llvmpipe). What has hit stays."""
         body = Body(self._live)
-        names = self._intervals(body, component)
-        body.add(f"float t, next = {self._start(component, names)};")
+        names = self._intervals(body, Any(tuple(components)))
+        numbers = range(1, len(components) + 1)
+        for number, component in zip(numbers, components, strict=True):
+            body.add(f"float next_{number} = {self._start(component, names)};")
+        body.add("float t;")
+        body.add("bool moved;")
         body.add("do {")
         inner = Body(self._live, 2)
-        inner.add("t = next;")
-        inner.add(f"next = {self._next(component, Scope(inner, names, {}))};")
+        inner.add("moved = false;")
+        for number, component in zip(numbers, components, strict=True):
+            inner.add(f"t = next_{number};")
+            inner.add(f"next_{number} = {self._next(component, Scope(inner, names, {}))};")
+            inner.add(f"moved = moved || (next_{number} > t && next_{number} < FAR);")
         inner.add("steps += 1.0;")
         body.lines += inner.lines
-        body.add("} while (next > t && next < FAR);")
-        body.add("return next;")
-        parts = ", ".join(dict.fromkeys(leaf.part.name for leaf in leaves_of(component)[:6]))
-        self._function(f"float {name}(vec3 o, vec3 d, float start)", body, f"from one event to the next: {parts}")
-        return name
+        body.add("} while (moved);")
+        body.add("float first = next_1;")
+        for number in numbers[1:]:
+            body.add(f"first = min(first, next_{number});")
+        body.add("return first;")
+        self._function("float solids(vec3 o, vec3 d, float start)", body, "each cut solid from one event to the next")
 
     def _intervals(self, body: Body, step: Step) -> Names:
         """Declares the ray's intervals with every closed-form leaf and box below `step`; names by part and side."""

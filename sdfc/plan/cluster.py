@@ -10,8 +10,8 @@ CLUSTER = 16  # rows
 
 
 def rows_at_once(count: int) -> int:
-    """Rows a turn of a loop over `count`: so many that seven rays and taps stay below llvmpipe's 65 535 turns."""
-    return next((n for n in (1, 4) if turns(count, n) <= 5400), CLUSTER)
+    """Rows a turn of a loop over `count`: so many that twenty rays and taps stay below llvmpipe's 65 535 turns."""
+    return next((n for n in (1, 4) if turns(count, n) <= 2700), CLUSTER)
 
 
 def turns(count: int, at_once: int) -> int:

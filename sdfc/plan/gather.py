@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from sdfc.field.graph import Expr
-from sdfc.plan.cluster import clustered
 from sdfc.plan.steps import Any, Closed, Many, Step
 from sdfc.shape.definition import Kind
 from sdfc.shape.matrix import Matrix
 
-MOST = 512  # rows of a table: Mesa's time for a constant array grows with its square (1000: 0.4 s, 4000: 7 s)
 FEWEST = 48  # straight-line code takes 4 ms a part to compile on llvmpipe (measured)
 _SIMPLE = (Kind.NUMBER, Kind.LENGTH, Kind.ANGLE, Kind.VECTOR2, Kind.VECTOR3, Kind.POINT2, Kind.POINT3)
 
@@ -27,11 +25,7 @@ def gathered(root: Step) -> Step:
             large = {key: group for key, group in groups.items() if len(group) >= FEWEST}
             inside = {id(step) for group in large.values() for step in group}
             rest = [step for step in root.steps if id(step) not in inside]
-            many = [
-                Many(group[0].part.shape.definition.name, tuple(table))
-                for group in large.values()
-                for table in clustered(group, MOST)
-            ]
+            many = [Many(group[0].part.shape.definition.name, tuple(group)) for group in large.values()]
             return Any((*many, *rest)) if many else root
         case _:
             return root

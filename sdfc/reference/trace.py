@@ -128,7 +128,7 @@ class StepTracer:
             case Within():
                 enter, leave = walk.boxes[id(step)]
                 return _enter([Interval(enter, leave)], start)
-            case (Any() | Many()) if members_of(step):
+            case Any() | Many() if members_of(step):
                 return _least([self._start(s, walk, start) for s in members_of(step)])
             case All() if step.steps:
                 return _greatest([self._start(s, walk, start) for s in step.steps])

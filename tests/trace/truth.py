@@ -18,6 +18,7 @@ from sdfc.gpu.frame import Frame
 from sdfc.gpu.program import FragmentProgram
 from sdfc.pipeline import Compiled, Options
 from sdfc.plan.plan import FINE, SMALLEST_TOLERANCE
+from sdfc.plan.steps import Ball, leaves_of
 from sdfc.reference.certify import Certificate, first_roots
 from sdfc.reference.compare import Comparison, compare
 from sdfc.shape.lower import lower
@@ -125,9 +126,13 @@ def footprint(compiled: Compiled, size: tuple[int, int], view: View = View()) ->
 
 
 def tolerance(compiled: Compiled, picture: Picture, cone: tuple[float, float]) -> float:
-    """Twice what the tracer takes for touching at the far side of the scene (ALGORITHMS: contested is within 2 eps)."""
+    """Twice what the tracer takes for touching at the far side of the scene (ALGORITHMS: contested is within 2 eps).
+
+    As a value of the field: one that is no distance, with Lipschitz constant L, may be L eps at a distance of eps.
+    """
     reach = float(np.linalg.norm(picture.o, axis=0).max()) + 1.0
-    return 2.0 * max(SMALLEST_TOLERANCE, FINE * (cone[0] + cone[1] * reach))
+    slope = max([1.0, *(leaf.lipschitz for leaf in leaves_of(compiled.plan.root) if isinstance(leaf, Ball))])
+    return 2.0 * slope * max(SMALLEST_TOLERANCE, FINE * (cone[0] + cone[1] * reach))
 
 
 def certified(compiled: Compiled, picture: Picture, near: float, end: float | None = None) -> Certificate:
