@@ -96,7 +96,7 @@ class BlendWriter:
 # Two bounds close in on the root of the concave function: a chord crosses before it, the line through two points on
 # the left crosses after it. The left one is proven (what puts its value below the level is rounding), and is the step.
 # Three rounds, written out: LLVM's time doubles with every loop of a shader (measured on llvmpipe).
-_CLEAR = """// how far ahead the blend of the operands' lines stays above `level`: left and right of the root, and their values
+_CLEAR = """// where the blend of the operands' lines comes down to `level`: left and right of it, and their values
 void {name}_closer(inout vec4 bracket, float level, {formal}) {{
     if (bracket.w > 0.0) return;  // the right end is left of the root by rounding: there is nothing to gain
     float left = bracket.x, left_value = bracket.z;

@@ -150,6 +150,8 @@ class Prover:
         where = own.meet(domain)
         if where.is_empty:
             return Any(()) if leaf.inside else self._ball(part, leaf, own)
+        if where.is_finite:  # a little wider than the solid: its boundary belongs to it
+            where = where.widened(1e-5 * max(where.radius, 1e-3))
         step: Step = self._ball(part, leaf, where)
         if tree is not None:
             step = Blend(part, tree, self._lipschitz.constant(leaf.placed, where))
@@ -163,8 +165,7 @@ class Prover:
 
     def _within(self, box: Box, step: Step, needed: bool) -> Within:
         self._boxes += 1
-        # a little wider than the solid: its boundary belongs to it
-        return Within(f"bounds_{self._boxes}", box.widened(1e-5 * max(box.radius, 1e-3)), step, needed)
+        return Within(f"bounds_{self._boxes}", box, step, needed)
 
     def _is_tangent(self, shape: Apply) -> bool:
         claims = shape.definition.claims
