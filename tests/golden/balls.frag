@@ -104,7 +104,7 @@ float torus(vec3 p, float major, float minor) {
 }
 
 // Turned around y, more the higher: `rate` is the angle per length.
-float twist_1(vec3 p) {
+float twist_1_field(vec3 p) {
     float product = 0.34906584 * p.y;
     float cosine = cos(product);
     float sine = sin(product);
@@ -165,7 +165,7 @@ vec4 twist_1_surface(vec3 p) {
 
 float map(vec3 p) {
     float d1 = torus(p, 0.52223295, 0.17407766);
-    d1 = max(d1, -(0.87038827 * twist_1(p * 1.1489125)));  // test.sdf:1:41
+    d1 = max(d1, -(0.87038827 * twist_1_field(p * 1.1489125)));  // test.sdf:1:41
     return d1;
 }
 
@@ -178,7 +178,7 @@ float march(vec3 o, vec3 d, float start, float limit) {
         t = next;
         vec3 p = o + t * d;
         float eps = tolerance(t), fine = rounding(t);
-        next = max(inside(bounds_1, t, ball(t, 3.0 * fine + torus(p, 0.52223295, 0.17407766), fine)), ball(t, 3.0 * fine - 0.87038827 * twist_1(p * 1.1489125), fine));
+        next = max(inside(bounds_1, t, ball(t, 3.0 * fine + torus(p, 0.52223295, 0.17407766), fine)), ball(t, 3.0 * fine - 0.87038827 * twist_1_field(p * 1.1489125), fine));
         steps += 1.0;
         count += 1;
     } while (next > t && next < limit && count < MOST_STEPS);

@@ -124,7 +124,7 @@ vec2 box_distance_slope(vec3 p, vec3 d, vec3 size) {
 }
 
 // A union with a fillet (quadratic kernel).
-float smooth_union_1(vec3 p) {
+float smooth_union_1_field(vec3 p) {
     vec3 q = abs(p) - vec3(0.5944383, 0.1783315, 0.1783315);
     float sum = length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0);
     float d = length(p) - 0.47555065;
@@ -174,7 +174,7 @@ vec3 smooth_union_weights(float a, float b, float blend) {
 }
 
 float map(vec3 p) {
-    return smooth_union_1(p);
+    return smooth_union_1_field(p);
 }
 
 // the blend of the operands' lines, tau ahead: concave in tau, and never above the field
@@ -185,23 +185,25 @@ float smooth_union_1_ahead(float tau, vec2 v_sphere_1, vec2 v_box_1) {
     return joined_2;
 }
 
-// how far ahead the blend of the operands' lines stays above `level`
+// where the blend of the operands' lines comes down to `level`: left and right of it, and their values
+void smooth_union_1_closer(inout vec4 bracket, float level, vec2 v_sphere_1, vec2 v_box_1) {
+    if (bracket.w > 0.0) return;  // the right end is left of the root by rounding: there is nothing to gain
+    float left = bracket.x, left_value = bracket.z;
+    float chord = left + (bracket.y - left) * left_value / max(left_value - bracket.w, 1e-30);
+    float at_chord = smooth_union_1_ahead(chord, v_sphere_1, v_box_1) - level;
+    float beyond = chord + (chord - left) * at_chord / max(left_value - at_chord, 1e-30);
+    bool closer = at_chord > 0.0 && left_value > at_chord && beyond < bracket.y;
+    float right = closer ? beyond : bracket.y;
+    bracket = vec4(chord, right, max(at_chord, 0.0), closer ? smooth_union_1_ahead(right, v_sphere_1, v_box_1) - level : bracket.w);
+}
 float smooth_union_1_clear(float value, float level, vec2 v_sphere_1, vec2 v_box_1) {
-    float left = 0.0, left_value = value - level;
-    float right = left_value * 4.0 + 1.0, right_value = smooth_union_1_ahead(right, v_sphere_1, v_box_1) - level;
-    if (right_value > 0.0) return right;
-    for (int i = 0; i < 4; i++) {
-        float chord = left + (right - left) * left_value / max(left_value - right_value, 1e-30);
-        float at_chord = smooth_union_1_ahead(chord, v_sphere_1, v_box_1) - level;
-        float beyond = chord + (chord - left) * at_chord / max(left_value - at_chord, 1e-30);
-        bool closer = at_chord > 0.0 && left_value > at_chord && beyond < right;
-        left = at_chord > 0.0 ? chord : left;
-        left_value = at_chord > 0.0 ? at_chord : left_value;
-        right = closer ? beyond : right;
-        right_value = closer ? smooth_union_1_ahead(beyond, v_sphere_1, v_box_1) - level : right_value;
-        if (right_value > 0.0) return left;
-    }
-    return left * 0.9999996;
+    vec4 bracket = vec4(0.0, 4.0 * (value - level) + 1.0, value - level, 0.0);
+    bracket.w = smooth_union_1_ahead(bracket.y, v_sphere_1, v_box_1) - level;
+    if (bracket.w > 0.0) return bracket.y;
+    smooth_union_1_closer(bracket, level, v_sphere_1, v_box_1);
+    smooth_union_1_closer(bracket, level, v_sphere_1, v_box_1);
+    smooth_union_1_closer(bracket, level, v_sphere_1, v_box_1);
+    return bracket.x * 0.9999996;
 }
 
 // the first hit of what is marched, before `limit`

@@ -155,24 +155,29 @@ float map(vec3 p) {
     return d1;
 }
 
-// from one event to the next: box_1, sphere_1, cylinder_1
-float solid_1(vec3 o, vec3 d, float start) {
+// each cut solid from one event to the next
+float solids(vec3 o, vec3 d, float start) {
     vec2 box_1 = box_ray(o, d, GROW, vec3(1.1547005));  // test.sdf:1:10
     vec2 sphere_1 = sphere_ray(o, d, GROW, 0.6928203);  // test.sdf:1:33
     vec2 cylinder_1_cut = cylinder_ray(o, d, CUT, 0.34641016, 2.309401);  // test.sdf:1:56
-    float t, next = max(enter(box_1, start), enter(sphere_1, start));
+    float next_1 = max(enter(box_1, start), enter(sphere_1, start));
+    float t;
+    bool moved;
     do {
-        t = next;
-        next = max(enter(both(box_1, sphere_1), t), leave(cylinder_1_cut, t));
+        moved = false;
+        t = next_1;
+        next_1 = max(enter(both(box_1, sphere_1), t), leave(cylinder_1_cut, t));
+        moved = moved || (next_1 > t && next_1 < FAR);
         steps += 1.0;
-    } while (next > t && next < FAR);
-    return next;
+    } while (moved);
+    float first = next_1;
+    return first;
 }
 
 // the first hit of what is solved in closed form
 float events(vec3 o, vec3 d, float start) {
     float first = FAR;
-    first = min(first, solid_1(o, d, start));
+    first = min(first, solids(o, d, start));
     return first;
 }
 

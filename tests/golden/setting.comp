@@ -30,10 +30,10 @@ const vec3 CENTRE = vec3(0.0, 0.0, 0.0);
 
 float steps = 0.0;
 float travelled = 0.0;  // along the path, to where the ray at hand has t = 0
-float high;
+float param_high;
 
 void prepare() {
-    high = set_high;
+    param_high = set_high;
 }
 
 // Intervals of the ray's parameter: vec2(enter, leave), vec4 for two in order; an empty one leaves at -FAR.

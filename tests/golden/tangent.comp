@@ -30,10 +30,10 @@ const vec3 CENTRE = vec3(0.0, 0.0, 0.0);
 
 float steps = 0.0;
 float travelled = 0.0;  // along the path, to where the ray at hand has t = 0
-float edge;
+float param_edge;
 
 void prepare() {
-    edge = set_edge;
+    param_edge = set_edge;
 }
 
 // Intervals of the ray's parameter: vec2(enter, leave), vec4 for two in order; an empty one leaves at -FAR.
@@ -142,7 +142,7 @@ vec4 rounded_box_surface(vec3 p, vec3 size, float radius) {
 
 float map(vec3 p) {
     vec3 q_rounded_box_1 = vec3(0.8660254 * p.x + (-0.5 * p.z), p.y, 0.5 * p.x + 0.8660254 * p.z);
-    return rounded_box(q_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), edge * 0.9886885);
+    return rounded_box(q_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), param_edge * 0.9886885);
 }
 
 // the first hit of what is marched, before `limit`
@@ -155,7 +155,7 @@ float march(vec3 o, vec3 d, float start, float limit) {
         vec3 p = o + t * d;
         float eps = tolerance(t), fine = rounding(t);
         vec3 q_rounded_box_1 = vec3(0.8660254 * p.x + (-0.5 * p.z), p.y, 0.5 * p.x + 0.8660254 * p.z);
-        next = tangent(t, rounded_box_slope(q_rounded_box_1, d_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), edge * 0.9886885), fine);
+        next = tangent(t, rounded_box_slope(q_rounded_box_1, d_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), param_edge * 0.9886885), fine);
         steps += 1.0;
         count += 1;
     } while (next > t && next < limit && count < MOST_STEPS);
@@ -184,7 +184,7 @@ Surface unpainted_material(vec4 field) {
 
 Surface surface(vec3 p) {
     vec3 q_rounded_box_1 = vec3(0.8660254 * p.x + (-0.5 * p.z), p.y, 0.5 * p.x + 0.8660254 * p.z);
-    vec4 g_rounded_box_1 = rounded_box_surface(q_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), edge * 0.9886885);  // test.sdf:2:9
+    vec4 g_rounded_box_1 = rounded_box_surface(q_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), param_edge * 0.9886885);  // test.sdf:2:9
     float sum = -0.5 * g_rounded_box_1.x + 0.8660254 * g_rounded_box_1.z;
     float sum_2 = 0.8660254 * g_rounded_box_1.x + 0.5 * g_rounded_box_1.z;
     return unpainted_material(vec4(sum_2, g_rounded_box_1.y, sum, g_rounded_box_1.w));
