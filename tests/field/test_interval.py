@@ -289,7 +289,9 @@ def test_both_sides_of_the_jumps_hold_every_value(root: Expr, line: list[float],
     # where an argument stays at the jump itself, or sign's does, an isolated point is one of a kind
     assume(not any(node.op in (Op.SIGN, Op.EQUAL) for node in topological([root])))
     assert enclosed(lo, hi, values).all()
-    assert (plain.lo <= lo).all() and (hi <= plain.hi).all()
+    # a divisor that jumps over zero is cut at zero by the plain rule, and need not be by the sides
+    if not any(node.op is Op.DIV for node in topological([root])):
+        assert (plain.lo <= lo).all() and (hi <= plain.hi).all()
 
 
 def test_sides_of_a_jump_are_tight_and_independent() -> None:
