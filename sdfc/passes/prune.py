@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from sdfc.facts.bounds import Bounds
+from sdfc.facts.box import Box
 from sdfc.field.graph import Expr
 from sdfc.passes.flatten import is_nothing
 from sdfc.passes.rewrite import descend
@@ -22,6 +23,7 @@ from sdfc.shape.graph import (
 
 # blends that are plain unions where their operands differ by the width or more (ALGORITHMS C2)
 _COMPACT = ("smooth_union", "smooth_union_cubic", "smooth_union_circular")
+_TOUCH = 1e-9  # of a box's radius: what rounding leaves between faces that coincide
 _DEEPEST = 4  # blends in blends: each asks for the boxes of all below it at a level of its own
 
 
@@ -75,7 +77,8 @@ class _Pruner:
         kept = self._graph.with_children(shape, children)
         if reach is None:
             return kept
-        if self._bounds.box(kept, reach.level).is_empty:
+        box = self._bounds.box(kept, reach.level)
+        if box.is_empty or (reach.level == 0.0 and _only_touch(kept, box)):
             return self._graph.nothing(kept.span, kept.dimension)
         match kept:
             case Union():
@@ -117,3 +120,12 @@ class _Pruner:
             near = [c for c, box in zip(shape.children, boxes, strict=True) if not (is_nothing(c) or box.is_empty)]
             return near[0] if len(near) == 1 else self._graph.union(near, shape.span, shape.dimension)
         return shape
+
+
+def _only_touch(shape: Shape, box: Box) -> bool:
+    """Whether an intersection is no more than the face of two solids that touch: a solid of no thickness is nothing."""
+    match shape:
+        case Intersection():
+            return box.is_finite and min(box.half) <= _TOUCH * box.radius
+        case _:
+            return False

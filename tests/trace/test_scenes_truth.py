@@ -20,7 +20,7 @@ MODELS = sorted((ROOT.parent / "shared" / "models").glob("*.csg"))
 
 # rays that are proved in a short run: interval arithmetic over hundreds of parts takes its time
 FEW = {
-    "chess.sdf": 6,
+    "chess.sdf": 8,
     "city.sdf": 6,
     "spheres.sdf": 15,
     "die.sdf": 24,
@@ -28,7 +28,7 @@ FEW = {
     "bracket.sdf": 30,
     "candle_stand.csg": 40,
     "candleStand.csg": 40,
-    "example024.csg": 15,
+    "example024.csg": 40,
 }
 USUAL = 120
 ULP = 2.0**-23
@@ -51,7 +51,8 @@ def test_against_interval_arithmetic(path: Path, tracing: Tracing, is_full: bool
     print(f"{path.name}: {result}")
     bad = wrong(some, truth)
     assert result.correct, f"{result}\nfirst wrong rays: o {some.o[:, bad[:3]].T}, d {some.d[:, bad[:3]].T}"
-    assert result.residual is not None and result.residual.maximum < tolerance(compiled, some, cone)
+    if result.sure.hits:
+        assert result.residual is not None and result.residual.maximum < tolerance(compiled, some, cone)
 
 
 @pytest.mark.parametrize("path", SCENES + MODELS, ids=name)
