@@ -25,7 +25,7 @@ from sdfc.scene.model import Param
 from sdfc.shade.ambient import OCCLUSION_HEIGHTS
 from sdfc.shade.functions import FUNCTIONS
 from sdfc.shape.look import Looks
-from sdfc.shape.lower import Lowering
+from sdfc.shape.lower import FAR, Lowering
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +100,7 @@ class _Assembly:
             "radius": literal(plan.radius),
             "centre": _vector(plan.centre),
             "params": self._params(),
+            "far": literal(FAR),
             "grow": literal(GROW),
             "cut": literal(CUT),
             "smallest": literal(SMALLEST_TOLERANCE),

@@ -16,7 +16,7 @@ from sdfc.plan.steps import Part
 from sdfc.shape.definition import Argument, Kind
 from sdfc.shape.graph import Apply
 from sdfc.shape.look import Looks
-from sdfc.shape.lower import Lowering
+from sdfc.shape.lower import FAR, Lowering, lower_gauge
 
 _TYPES = {
     Kind.NUMBER: Type.FLOAT,
@@ -160,13 +160,7 @@ class Functions:
 
     def convex_function(self, shape: Apply, p: Expr) -> Expr:
         """The primitive's gauge (sharp, and convex where the solid is), else the formula."""
-        gauge = shape.definition.claims.gauge
-        if shape.definition.is_primitive and gauge is not None:
-            return gauge(p, shape.environment)
-        return self._lowering.value(shape, p)
-
-
-FAR = 1e9
+        return lower_gauge(shape, p) if shape.definition.is_primitive else self._lowering.value(shape, p)
 
 
 def intervals(shape: Apply, o: Expr, d: Expr, grow: Expr) -> Expr:

@@ -15,10 +15,11 @@ from sdfc.plan.setting import Setting
 from sdfc.reference.formulas import PROPERTIES, Formulas
 from sdfc.reference.rays import Rays
 from sdfc.reference.surface import Surface, SurfaceFold
-from sdfc.reference.trace import FAR, StepTracer
+from sdfc.reference.trace import StepTracer
 from sdfc.scene.model import Light, PointLight, Sun
 from sdfc.shade.ambient import OCCLUSION_HEIGHTS
 from sdfc.shade.functions import FUNCTIONS
+from sdfc.shape.lower import FAR
 
 Array = NDArray[np.float64]
 

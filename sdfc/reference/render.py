@@ -19,8 +19,9 @@ from sdfc.reference.formulas import Formulas
 from sdfc.reference.light import Hits, Shader
 from sdfc.reference.rays import Rays
 from sdfc.reference.surface import Surface, SurfaceFold
-from sdfc.reference.trace import FAR, StepTracer, members_of
+from sdfc.reference.trace import StepTracer, members_of
 from sdfc.scene.model import Scene
+from sdfc.shape.lower import FAR
 
 Array = NDArray[np.float64]
 Params = Mapping[str, tuple[float, ...]]

@@ -31,7 +31,8 @@ from sdfc.plan.steps import (
 )
 from sdfc.reference.formulas import Formulas
 from sdfc.reference.rays import box_gap
-from sdfc.reference.trace import FAR, box_of, members_of
+from sdfc.reference.trace import box_of, members_of
+from sdfc.shape.lower import FAR
 
 Array = NDArray[np.float64]
 _NEAR = 1e-2  # a point on a union's surface is no further than this from the box of the member that it is on

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdfc.facts.box import Box, everything, nothing
-from sdfc.plan.plan import Plan
+from sdfc.plan.plan import FINE, Plan
 from sdfc.plan.steps import (
     All,
     Any,
@@ -27,16 +27,16 @@ from sdfc.plan.steps import (
 )
 from sdfc.reference.formulas import Formulas, Interval
 from sdfc.reference.rays import Rays, box_interval
+from sdfc.shape.lower import FAR
 
 Array = NDArray[np.float64]
 
-FAR = 1e9
 GROW = 1e-12  # solids are this much larger, so that parts that touch leave no crack; in units of the scene's radius
 CUT = 4e-12  # what is cut away is this much larger, so that faces that coincide leave no film
 SHY = 1.0 - 1e-12  # a step stays this much short of what is proved, for the rounding of the proof
 MARGIN = 1e-6  # boxes are this much larger than what they hold
 MOST_STEPS = 4096
-PROVEN_TOLERANCE = 1 / 64
+PROVEN_TOLERANCE = FINE
 """How near counts as there, in half pixels ..."""
 SMALLEST_TOLERANCE = 2.0**-22
 """... but not nearer than this, in units of the scene's radius; what converges fast is asked for this everywhere."""

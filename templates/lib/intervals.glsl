@@ -1,5 +1,5 @@
 // Intervals of the ray's parameter: vec2(enter, leave), vec4 for two in order; an empty one leaves at -FAR.
-const float FAR = 1e9;
+const float FAR = {{ far }};
 const float GROW = {{ grow }};  // solids are this much larger: parts that touch leave no crack
 const float CUT = {{ cut }};  // what is cut away is this much larger: faces that coincide leave no film
 
