@@ -27,7 +27,7 @@ from sdfc.plan.view import CameraChange, uniforms_of
 from sdfc.scene.library import Library
 from sdfc.scene.model import Scene
 from sdfc.shape.graph import Shape
-from sdfc.tracers import TRACERS
+from sdfc.tracers import TRACERS, choice
 
 Kind = Literal["sdf", "csg"]
 MOST_PARAMS = 16  # live uniforms: more of them slow every frame on llvmpipe (GL.md 0)
@@ -38,7 +38,8 @@ _DEPTH = 400_000  # Python frames: chains of thousands of operations; pure Pytho
 class Options:
     """What may be asked of the compiler."""
 
-    tracer: str = "proven"
+    tracer: str = "proven"  # with values for its parameters, where wanted: `relaxed:omega=1.4`
+    most_steps: int | None = None  # fewer passes of the loops than the compiler would allow: a measurer's budget
 
 
 def tracer_names() -> tuple[str, ...]:
@@ -196,16 +197,18 @@ def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:
         with deep_recursion():
             lipschitz = Lipschitz(workshop.ranges, workshop.bounds)
             setting = setting_of(scene, frame)
+            chosen = choice(options.tracer)
             prover = Prover(scene.values, workshop.bounds, lipschitz, setting.unpainted)
             steps = prover.prove(root)
             plan = Plan(
                 steps,
-                TRACERS[options.tracer],
+                chosen,
                 tuple(dict.fromkeys(m for p in prover.parts for m in p.looks)) or (setting.unpainted,),
-                prover.slopes(needed=TRACERS[options.tracer].needs_map),
+                prover.slopes(needed=chosen.tracer.needs_map),
                 frame.radius,
                 frame.centre,
                 frame.is_finite,
+                options.most_steps,
             )
     except RecursionError as error:
         raise InternalError("the scene is nested too deeply to compile") from error

@@ -12,6 +12,7 @@ from sdfc.api.source import Input
 
 if TYPE_CHECKING:
     from sdfc.syntax.tree import FieldDeclaration
+    from sdfc.tracers.record import Tracer
 
 LISTS = ("primitives", "operations", "tracers")
 _CHILD_KINDS = frozenset({"solid", "profile"})
@@ -38,13 +39,22 @@ def listing(kind: str) -> list[tuple[str, str]]:
     if kind == "tracers":
         from sdfc.tracers import TRACERS
 
-        return [(tracer.name, tracer.doc) for tracer in TRACERS.values()]
+        return [(_tracer_usage(tracer), _tracer_words(tracer)) for tracer in TRACERS.values()]
     from sdfc.scene.library import declaration, standard_names
 
     fields = [declaration(name) for name in standard_names()]
     if kind == "primitives":
         return [(_usage(field), field.doc) for field in fields if not _is_operation(field)]
     return [*_built_in(), *((_usage(field), field.doc) for field in fields if _is_operation(field))]
+
+
+def _tracer_usage(tracer: Tracer) -> str:
+    """`relaxed:omega=1.4`, with the defaults of the parameters that it has."""
+    return ":".join([tracer.name, *(f"{p.name}={p.default:g}" for p in tracer.parameters)])
+
+
+def _tracer_words(tracer: Tracer) -> str:
+    return f"{tracer.doc} ({tracer.source}) Needs {tracer.needs}; gives: {tracer.guarantee}."
 
 
 def _built_in() -> list[tuple[str, str]]:

@@ -17,6 +17,7 @@ from sdfc.api.request import (
     checked_params,
     checked_samples,
     checked_size,
+    checked_tracer,
 )
 from sdfc.api.source import Input, Kind, from_path, from_text, looks_like_path
 from sdfc.diagnostics import DeviceError, Diagnostic
@@ -56,7 +57,7 @@ class Program:
         if tracer not in self._compiled:
             from sdfc import pipeline
 
-            (tracer,) = checked_names("tracer", (tracer,), pipeline.tracer_names())
+            checked_tracer(tracer)
             self._compiled[tracer] = pipeline.compile_scene(self.scene, pipeline.Options(tracer=tracer))
         return self._compiled[tracer]
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
@@ -13,7 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from sdfc.gpu.program import FragmentProgram
+    from sdfc.gpu.frame import Frame
+    from sdfc.gpu.program import FragmentProgram, Value
     from sdfc.pipeline import Compiled
 
 Progress: TypeAlias = Callable[[float], None]
@@ -50,6 +52,23 @@ class Renderer(Protocol):
         """Give back what it holds."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Prepared:
+    """What `GlRenderer.prepared` gives: `draw` draws all stages over the whole frame, and waits until it is done."""
+
+    frame: Frame
+    program: FragmentProgram
+    uniforms: Mapping[str, Value]
+
+    def draw(self) -> None:
+        """One frame. The first draw of a program compiles it (llvmpipe)."""
+        self.frame.draw_whole(self.program, self.uniforms)
+
+    def read(self, attachment: int = 0) -> Buffer:
+        """An image of the last frame, (height, width, 4), rows from the top."""
+        return self.frame.read(attachment)
+
+
 class GlRenderer:
     """Draws with OpenGL, on a device of its own; keeps the programs that it has compiled."""
 
@@ -75,6 +94,16 @@ class GlRenderer:
     def depth(self, shot: Shot, progress: Progress | None) -> Buffer:
         """See Renderer."""
         return self._draw(shot, "depth", 1, 0, progress)[0]
+
+    @contextmanager
+    def prepared(self, shot: Shot, entry: str, attachments: int = 1) -> Iterator[Prepared]:
+        """A shot whose programs are compiled and whose frame is there, to be drawn as often as a measurement asks."""
+        from sdfc.gpu.frame import Frame
+
+        program = self._program(shot.compiled.glsl(entry, "fragment"), shot.compiled.vertex())
+        uniforms = shot.compiled.uniforms(shot.view, shot.params, shot.size)
+        with Frame(self.device, *shot.size, attachments) as frame:
+            yield Prepared(frame, program, uniforms)
 
     def _draw(self, shot: Shot, entry: str, attachments: int, sample: int, progress: Progress | None) -> list[Buffer]:
         from sdfc.gpu.frame import Frame

@@ -89,6 +89,17 @@ def checked_names(kind: str, names: Iterable[str], known: tuple[str, ...]) -> tu
     return wanted
 
 
+def checked_tracer(spec: str) -> str:
+    """A tracer's name, perhaps with values for its parameters (`relaxed:omega=1.4`), if there is one."""
+    from sdfc.tracers import TRACERS, choice
+
+    checked_names("tracer", (spec.partition(":")[0],), tuple(TRACERS))
+    try:
+        return choice(spec).spec
+    except ValueError as error:
+        raise RequestError(str(error)) from None
+
+
 def checked_params(params: tuple[Param, ...], given: Mapping[str, Setting]) -> dict[str, tuple[float, ...]]:
     """A value for every `param` of a scene: the given one, where it has the right size and lies in the range."""
     by_name = {param.name: param for param in params}

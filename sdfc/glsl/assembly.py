@@ -115,6 +115,7 @@ class _Assembly:
             "tables": "\n".join(many.tables),
             "trace": trace,
             "tracer_template": tracer.template,
+            "parameter": {name: literal(value) for name, value in plan.choice.values.items()},
             "surface": surface,
         }
         if self._lit and surface is not None:
@@ -156,7 +157,7 @@ class _Assembly:
         rays = 1 + (len(self._setting.lights) if self._lit else 0)
         taps = 4 if self._lit else 0
         free = (MOST_LOOPS - (rays + taps) * self._plan.table_turns) // rays - 2 * self._plan.events
-        return max(16, min(2048, free))
+        return max(16, min(2048, free)) if self._plan.budget is None else min(self._plan.budget, max(16, free))
 
     def _header(self) -> list[str]:
         tracer = self._plan.tracer

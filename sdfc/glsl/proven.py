@@ -163,10 +163,12 @@ class ProvenWriter:
         inner.add("float eps = tolerance(t), fine = rounding(t);")
         inner.add(f"next = {self._next(root, Scope(inner, names, directions))};")
         inner.add("steps += 1.0;")
+        inner.add("evaluations += 1.0;")
         inner.add("count += 1;")
         body.lines += inner.lines
         body.lines.insert(0, "    int count = 0;")
         body.add("} while (next > t && next < limit && count < MOST_STEPS);")
+        body.add("unfinished = next > t && next < limit ? 1.0 : 0.0;")
         body.add("return next > t && next >= limit ? FAR : t;")
         self._function(
             "float march(vec3 o, vec3 d, float start, float limit)",

@@ -64,6 +64,13 @@ class Frame:
                 if progress is not None:
                     progress(row / self.height)
 
+    def draw_whole(self, program: FragmentProgram, uniforms: Mapping[str, Value]) -> None:
+        """Draw the whole frame at once, and wait for it: for measuring, not for machines with a watchdog."""
+        program.set(uniforms)
+        with self._in_use(), device_errors(self.device, "drawing"):
+            program.draw()
+            self.device.context.finish()
+
     def _draw_rows(self, program: FragmentProgram, row: int, rows: int) -> None:
         """Draw `rows` rows, `row` rows below the top (OpenGL counts from the bottom)."""
         self._framebuffer.scissor = (0, self.height - row - rows, self.width, rows)

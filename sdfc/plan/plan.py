@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from sdfc.plan.cluster import CLUSTER, rows_at_once, turns
 from sdfc.plan.steps import Any, Closed, Many, Step, leaves_of
 from sdfc.shape.material import Material
-from sdfc.tracers.record import Tracer
+from sdfc.tracers.record import Choice, Tracer
 
 # Units of the scene's own radius. A ray's intervals are right to about three roundings of numbers up to one.
 GROW = 2.0**-22
@@ -24,12 +24,17 @@ class Plan:
     """The step tree, the tracer, and what the shader needs besides."""
 
     root: Step
-    tracer: Tracer
+    choice: Choice
     materials: tuple[Material, ...]
     slopes: dict[int, float]  # the Lipschitz constant of each part's formula, by id of the part
     radius: float
     centre: tuple[float, float, float]
     is_finite: bool  # the whole scene lies in the unit ball of its own coordinates
+    budget: int | None = None  # a measurer's limit on the passes of a ray's loops
+
+    @property
+    def tracer(self) -> Tracer:
+        return self.choice.tracer
 
     @property
     def events(self) -> int:

@@ -306,6 +306,7 @@ def _claims(declaration: tree.FieldDeclaration, maker: _Maker, is_standard: bool
         bounds_use_level=bounds is not None and "level" in mentions((bounds.value, bounds.where)).used,
         gauge=maker.gauge(found["gauge"]) if "gauge" in found else None,
         ray=maker.ray(found["ray"]) if "ray" in found else None,
+        ray_is_dear="ray" in found and found["ray"].detail == "dear",
         lowering=maker.lowering(found["lowering"]) if "lowering" in found else None,
         dual=_dual(found.get("dual"), declaration),
     )

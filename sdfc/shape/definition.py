@@ -109,6 +109,8 @@ class Claims:
     # the parameter intervals where the line o + t d (d of any length) is in {gauge <= grow}: (o, d, grow, environment);
     # an interval with enter >= exit is empty; several are sorted and disjoint
     ray: Callable[[Expr, Expr, Expr, Environment], tuple[Interval, ...]] | None = None
+    # whether `ray` costs more than marching where every pixel runs on a CPU: the compiler's options say if it is used
+    ray_is_dear: bool = False
     # an operation's value is at least min(children) - lowering, and space is not moved
     lowering: Callable[[Environment], Expr] | None = None
     # complement(this(a, b)) = dual(complement a, complement b)

@@ -161,6 +161,11 @@ class Builder:
         _, condition, message = parts
         return tree.Claim(self._whole(parts), "requires", self._text(message), condition)
 
+    def ray_claim(self, parts: Parts) -> tree.Claim:
+        dear, word, value, where = parts
+        detail = "" if dear is None else str(dear)
+        return tree.Claim(self._whole(parts), str(word), detail, value, _bindings(where))
+
     def formula_claim(self, parts: Parts) -> tree.Claim:
         word, value, where = parts
         return tree.Claim(self._whole(parts), str(word), "", value, _bindings(where))

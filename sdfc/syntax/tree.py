@@ -323,7 +323,7 @@ class Claim:
 
     span: Span
     word: str
-    detail: str = ""  # of `exact`: inside or outside; of `dual`: the name; of `requires`: the message
+    detail: str = ""  # of `exact`: inside or outside; of `ray`: dear; of `dual`: the name; of `requires`: the message
     value: Expression | None = None
     where: tuple[Binding, ...] = ()
 

@@ -6,7 +6,7 @@ import importlib
 import pkgutil
 from types import MappingProxyType
 
-from sdfc.tracers.record import Tracer
+from sdfc.tracers.record import Choice, Tracer
 
 
 def _table() -> MappingProxyType[str, Tracer]:
@@ -19,3 +19,27 @@ def _table() -> MappingProxyType[str, Tracer]:
 
 
 TRACERS = _table()
+
+
+def choice(spec: str) -> Choice:
+    """The tracer of `NAME` or `NAME:PARAMETER=NUMBER:...`. ValueError, in words for the user, where there is none."""
+    name, *settings = spec.split(":")
+    if name not in TRACERS:
+        raise ValueError(f"there is no tracer '{name}' (there are: {', '.join(TRACERS)})")
+    tracer = TRACERS[name]
+    values = {p.name: p.default for p in tracer.parameters}
+    known = {p.name: p for p in tracer.parameters}
+    for setting in settings:
+        key, _, text = setting.partition("=")
+        if key not in known:
+            there = f"there are: {', '.join(known)}" if known else "it has none"
+            raise ValueError(f"tracer '{name}' has no parameter '{key}' ({there})")
+        try:
+            values[key] = float(text)
+        except ValueError:
+            raise ValueError(f"'{text}' is no number (parameter '{key}' of tracer '{name}')") from None
+        if not known[key].low <= values[key] <= known[key].high:
+            raise ValueError(
+                f"parameter '{key}' of tracer '{name}' is from {known[key].low:g} to {known[key].high:g}, not {text}"
+            )
+    return Choice(tracer, values)

@@ -1,7 +1,7 @@
 #version {{ version }}
 {% include "entry/scene.glsl" %}
 
-layout(location = 0) out vec4 first_out;  // depth in scene units (below 0: a miss), steps, no material, hit
+layout(location = 0) out vec4 first_out;  // depth in scene units (below 0: a miss), steps, evaluations, hit
 
 void main() {
     prepare();
@@ -9,5 +9,7 @@ void main() {
     camera_ray(o, d);
     travelled = rebase(o, d);
     float t = trace(o, d, -travelled, FAR);
-    first_out = t < FAR ? vec4((travelled + t) * RADIUS, steps, -1.0, 1.0) : vec4(-1.0, steps, -1.0, 0.0);
+    bool hit = t < FAR;
+    float sure = 0.25 * unfinished;  // 1 and 0 are hit and miss, 0.75 and 0.25 what was answered at MOST_STEPS
+    first_out = hit ? vec4((travelled + t) * RADIUS, steps, evaluations, 1.0 - sure) : vec4(-1.0, steps, evaluations, sure);
 }

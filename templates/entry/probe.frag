@@ -18,7 +18,8 @@ void main() {
 {% filter indent(4, true) %}
 {% include "shade/polish.glsl" %}
 {% endfilter %}
-    first_out = hit ? vec4((travelled + t) * RADIUS, steps, s.material, 1.0) : vec4(-1.0, steps, -1.0, 0.0);
+    float sure = 0.25 * unfinished;  // 1 and 0 are hit and miss, 0.75 and 0.25 what was answered at MOST_STEPS
+    first_out = hit ? vec4((travelled + t) * RADIUS, steps, s.material, 1.0 - sure) : vec4(-1.0, steps, -1.0, sure);
     normal_out = hit ? vec4(normalize(s.field.xyz), 0.0) : vec4(0.0);
     position_out = hit ? vec4(p * RADIUS + CENTRE, 0.0) : vec4(0.0);
     direction_out = vec4(d, 0.0);

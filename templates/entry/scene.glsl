@@ -11,7 +11,9 @@ uniform {{ param.type }} {{ param.uniform }};  // {{ param.note }}
 const float RADIUS = {{ radius }};  // the scene's own unit, and its own origin
 const vec3 CENTRE = {{ centre }};
 
-float steps = 0.0;
+float steps = 0.0;        // passes of the loops
+float evaluations = 0.0;  // values of the whole scene that they took
+float unfinished = 0.0;   // 1 where a ray was given up at MOST_STEPS
 float travelled = 0.0;  // along the path, to where the ray at hand has t = 0
 {% for param in params %}
 {{ param.type }} {{ param.name }};

@@ -9,7 +9,9 @@ float trace(vec3 o, vec3 d, float start, float limit) {
         eps = tolerance(t);
         t += r > eps ? r : 0.0;
         steps += 1.0;
+        evaluations += 1.0;
         count += 1;
     } while (r > eps && t < end && count < MOST_STEPS);
+    unfinished = r > eps && t < end ? 1.0 : 0.0;
     return t < end ? t : FAR;
 }

@@ -23,7 +23,9 @@ void camera_ray(out vec3 o, out vec3 d) {
 const float RADIUS = 1.1489125;  // the scene's own unit, and its own origin
 const vec3 CENTRE = vec3(0.0, 0.0, 0.0);
 
-float steps = 0.0;
+float steps = 0.0;        // passes of the loops
+float evaluations = 0.0;  // values of the whole scene that they took
+float unfinished = 0.0;   // 1 where a ray was given up at MOST_STEPS
 float travelled = 0.0;  // along the path, to where the ray at hand has t = 0
 
 void prepare() {
@@ -180,8 +182,10 @@ float march(vec3 o, vec3 d, float start, float limit) {
         float eps = tolerance(t), fine = rounding(t);
         next = max(inside(bounds_1, t, ball(t, 3.0 * fine + torus(p, 0.52223295, 0.17407766), fine)), ball(t, 3.0 * fine - 0.87038827 * twist_1_field(p * 1.1489125), fine));
         steps += 1.0;
+        evaluations += 1.0;
         count += 1;
     } while (next > t && next < limit && count < MOST_STEPS);
+    unfinished = next > t && next < limit ? 1.0 : 0.0;
     return next > t && next >= limit ? FAR : t;
 }
 

@@ -23,7 +23,9 @@ void camera_ray(out vec3 o, out vec3 d) {
 const float RADIUS = 0.8411302;  // the scene's own unit, and its own origin
 const vec3 CENTRE = vec3(0.0, 0.0, 0.0);
 
-float steps = 0.0;
+float steps = 0.0;        // passes of the loops
+float evaluations = 0.0;  // values of the whole scene that they took
+float unfinished = 0.0;   // 1 where a ray was given up at MOST_STEPS
 float travelled = 0.0;  // along the path, to where the ray at hand has t = 0
 
 void prepare() {
@@ -221,8 +223,10 @@ float march(vec3 o, vec3 d, float start, float limit) {
         float left_smooth_union_1 = smooth_union_1_clear(v_smooth_union_1, 0.5 * fine - 0.0, v_sphere_1, v_box_1);
         next = inside(bounds_1, t, ball(t, v_smooth_union_1 <= fine ? v_smooth_union_1 : max(left_smooth_union_1, v_smooth_union_1), fine));
         steps += 1.0;
+        evaluations += 1.0;
         count += 1;
     } while (next > t && next < limit && count < MOST_STEPS);
+    unfinished = next > t && next < limit ? 1.0 : 0.0;
     return next > t && next >= limit ? FAR : t;
 }
 

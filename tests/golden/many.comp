@@ -26,7 +26,9 @@ void camera_ray(out vec3 o, out vec3 d) {
 const float RADIUS = 24.851475;  // the scene's own unit, and its own origin
 const vec3 CENTRE = vec3(24.5245, 2.9995, 0.9995);
 
-float steps = 0.0;
+float steps = 0.0;        // passes of the loops
+float evaluations = 0.0;  // values of the whole scene that they took
+float unfinished = 0.0;   // 1 where a ray was given up at MOST_STEPS
 float travelled = 0.0;  // along the path, to where the ray at hand has t = 0
 
 void prepare() {

@@ -25,7 +25,9 @@ uniform float set_edge;  // number, 0.1 in 0 .. 0.2
 const float RADIUS = 1.0114409;  // the scene's own unit, and its own origin
 const vec3 CENTRE = vec3(0.0, 0.0, 0.0);
 
-float steps = 0.0;
+float steps = 0.0;        // passes of the loops
+float evaluations = 0.0;  // values of the whole scene that they took
+float unfinished = 0.0;   // 1 where a ray was given up at MOST_STEPS
 float travelled = 0.0;  // along the path, to where the ray at hand has t = 0
 float param_edge;
 
@@ -154,8 +156,10 @@ float march(vec3 o, vec3 d, float start, float limit) {
         vec3 q_rounded_box_1 = vec3(0.8660254 * p.x + (-0.5 * p.z), p.y, 0.5 * p.x + 0.8660254 * p.z);
         next = tangent(t, rounded_box_slope(q_rounded_box_1, d_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), param_edge * 0.9886885), fine);
         steps += 1.0;
+        evaluations += 1.0;
         count += 1;
     } while (next > t && next < limit && count < MOST_STEPS);
+    unfinished = next > t && next < limit ? 1.0 : 0.0;
     return next > t && next >= limit ? FAR : t;
 }
 

@@ -1,0 +1,1 @@
+"""How right and how fast: pictures against certified truth, benchmarks, stress."""
