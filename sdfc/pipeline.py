@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
@@ -21,7 +21,7 @@ from sdfc.passes.place import place
 from sdfc.passes.prune import prune
 from sdfc.passes.recognise import recognise
 from sdfc.plan.plan import Plan
-from sdfc.plan.prove import Prover
+from sdfc.plan.prove import Prover, Rays
 from sdfc.plan.setting import Setting, setting_of
 from sdfc.plan.view import CameraChange, uniforms_of
 from sdfc.scene.library import Library
@@ -39,6 +39,8 @@ class Options:
     """What may be asked of the compiler."""
 
     tracer: str = "proven"  # with values for its parameters, where wanted: `relaxed:omega=1.4`
+    rays: Rays = "cheap"  # "all": closed-form ray intervals even where marching is cheaper on a CPU
+    prepass: bool = False  # tiles of pixels are told first how far they are empty, where that is legal
     most_steps: int | None = None  # fewer passes of the loops than the compiler would allow: a measurer's budget
 
 
@@ -198,7 +200,7 @@ def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:
             lipschitz = Lipschitz(workshop.ranges, workshop.bounds)
             setting = setting_of(scene, frame)
             chosen = choice(options.tracer)
-            prover = Prover(scene.values, workshop.bounds, lipschitz, setting.unpainted)
+            prover = Prover(scene.values, workshop.bounds, lipschitz, setting.unpainted, options.rays)
             steps = prover.prove(root)
             plan = Plan(
                 steps,
@@ -208,8 +210,9 @@ def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:
                 frame.radius,
                 frame.centre,
                 frame.is_finite,
-                options.most_steps,
+                budget=options.most_steps,
             )
+            plan = replace(plan, prepass=options.prepass and plan.can_sweep)
     except RecursionError as error:
         raise InternalError("the scene is nested too deeply to compile") from error
     return Compiled(scene, plan, setting, root, frame)

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from sdfc.api.renderer import Buffer, Progress, Shot, jitter
+
+if TYPE_CHECKING:
+    from sdfc.plan.prove import Rays
 
 
 class CpuRenderer:
@@ -12,6 +17,11 @@ class CpuRenderer:
     def name(self) -> str:
         """What draws."""
         return "NumPy, float64"
+
+    @property
+    def rays(self) -> Rays:
+        """Only the rays that meet a part's box pay for its formula, and every step of marching is many calls."""
+        return "all"
 
     def radiance(self, shot: Shot, sample: int, progress: Progress | None) -> Buffer:
         """See Renderer."""

@@ -26,6 +26,7 @@ from sdfc.image.picture import AOVS, Image
 if TYPE_CHECKING:
     from sdfc.image.picture import Array
     from sdfc.pipeline import Compiled
+    from sdfc.plan.prove import Rays
     from sdfc.scene.model import Param, Scene
 
 BACKENDS = ("auto", "gl", "cpu")
@@ -38,7 +39,7 @@ class Program:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self._compiled: dict[str, Compiled] = {}
+        self._compiled: dict[tuple[str, Rays], Compiled] = {}
         self._renderers: dict[str, Renderer] = {}
         self._close = weakref.finalize(self, _close_all, self._renderers)
 
@@ -52,14 +53,15 @@ class Program:
         """The live values: what `render(params=...)` may set."""
         return self.scene.params
 
-    def compiled(self, tracer: str = DEFAULT_TRACER) -> Compiled:
-        """The compiler's result for a tracer, made once."""
-        if tracer not in self._compiled:
+    def compiled(self, tracer: str = DEFAULT_TRACER, rays: Rays = "cheap") -> Compiled:
+        """The compiler's result for a tracer, made once. `rays`: whether closed forms that are dear are used too."""
+        key = tracer, rays
+        if key not in self._compiled:
             from sdfc import pipeline
 
             checked_tracer(tracer)
-            self._compiled[tracer] = pipeline.compile_scene(self.scene, pipeline.Options(tracer=tracer))
-        return self._compiled[tracer]
+            self._compiled[key] = pipeline.compile_scene(self.scene, pipeline.Options(tracer=tracer, rays=rays))
+        return self._compiled[key]
 
     def glsl(self, target: str = "glsl450", stage: str = "fragment", tracer: str = DEFAULT_TRACER) -> str:
         """The scene's picture as one complete shader."""
@@ -93,8 +95,8 @@ class Program:
         wanted = checked_names("image", aovs, AOVS)
         values = checked_params(self.params, params or {})
         (backend,) = checked_names("backend", (backend,), BACKENDS)
-        shot = Shot(self.compiled(tracer), camera or View(), values, size)
         renderer = self._renderer(backend, note)
+        shot = Shot(self.compiled(tracer, renderer.rays), camera or View(), values, size)
         passes = samples + bool(wanted)
         colour = _accumulated(renderer, shot, [_part(progress, sample, passes) for sample in range(samples)])
         kept = _aovs(renderer, shot, wanted, _part(progress, samples, passes)) if wanted else {}

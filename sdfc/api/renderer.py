@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from sdfc.api.request import View
 from sdfc.diagnostics import DeviceError
+from sdfc.plan.plan import TILE
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from sdfc.gpu.frame import Frame
     from sdfc.gpu.program import FragmentProgram, Value
     from sdfc.pipeline import Compiled
+    from sdfc.plan.prove import Rays
 
 Progress: TypeAlias = Callable[[float], None]
 Buffer: TypeAlias = "NDArray[np.floating]"
@@ -39,6 +41,10 @@ class Renderer(Protocol):
     def name(self) -> str:
         """What draws, as it calls itself."""
 
+    @property
+    def rays(self) -> Rays:
+        """Which ray intervals in closed form to compile for it: whether those that are dear cost less than marching."""
+
     def radiance(self, shot: Shot, sample: int, progress: Progress | None) -> Buffer:
         """Linear radiance and, in the last channel, whether something was hit (0 or 1), for one sample of a pixel."""
 
@@ -53,15 +59,31 @@ class Renderer(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Sweep:
+    """The cone prepass of a shot: how far from the eye every tile of pixels is proven empty, as texture 0."""
+
+    tiles: Frame
+    program: FragmentProgram
+
+    def draw(self, uniforms: Mapping[str, Value]) -> None:
+        """Sweep, and let what is drawn next read it."""
+        self.tiles.draw_whole(self.program, uniforms)
+        self.tiles.bind()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Prepared:
     """What `GlRenderer.prepared` gives: `draw` draws all stages over the whole frame, and waits until it is done."""
 
     frame: Frame
     program: FragmentProgram
-    uniforms: Mapping[str, Value]
+    uniforms: dict[str, Value]  # may be changed between draws
+    sweep: Sweep | None
 
     def draw(self) -> None:
         """One frame. The first draw of a program compiles it (llvmpipe)."""
+        if self.sweep is not None:
+            self.sweep.draw(self.uniforms)
         self.frame.draw_whole(self.program, self.uniforms)
 
     def read(self, attachment: int = 0) -> Buffer:
@@ -83,6 +105,11 @@ class GlRenderer:
         """What draws, as the driver calls it."""
         return self.device.renderer
 
+    @property
+    def rays(self) -> Rays:
+        """Long formulas are cheap where there is hardware for them; llvmpipe computes them for every pixel."""
+        return "cheap" if self.device.is_llvmpipe else "all"
+
     def radiance(self, shot: Shot, sample: int, progress: Progress | None) -> Buffer:
         """See Renderer."""
         return self._draw(shot, "radiance", 1, sample, progress)[0]
@@ -102,15 +129,32 @@ class GlRenderer:
 
         program = self._program(shot.compiled.glsl(entry, "fragment"), shot.compiled.vertex())
         uniforms = shot.compiled.uniforms(shot.view, shot.params, shot.size)
-        with Frame(self.device, *shot.size, attachments) as frame:
-            yield Prepared(frame, program, uniforms)
+        with self._sweep(shot) as sweep, Frame(self.device, *shot.size, attachments) as frame:
+            yield Prepared(frame, program, uniforms, sweep)
+
+    @contextmanager
+    def _sweep(self, shot: Shot) -> Iterator[Sweep | None]:
+        """The shot's cone prepass, if its plan has one."""
+        from sdfc.gpu.frame import Frame
+        from sdfc.gpu.program import FragmentProgram
+
+        if not shot.compiled.plan.prepass:
+            yield None
+            return
+        glsl = shot.compiled.glsl("cone", "fragment")
+        if glsl not in self._programs:
+            self._programs[glsl] = FragmentProgram(self.device, glsl)
+        with Frame(self.device, *(-(-side // TILE) for side in shot.size)) as tiles:
+            yield Sweep(tiles, self._programs[glsl])
 
     def _draw(self, shot: Shot, entry: str, attachments: int, sample: int, progress: Progress | None) -> list[Buffer]:
         from sdfc.gpu.frame import Frame
 
         program = self._program(shot.compiled.glsl(entry, "fragment"), shot.compiled.vertex())
         uniforms = shot.compiled.uniforms(shot.view, shot.params, shot.size, jitter(sample))
-        with Frame(self.device, *shot.size, attachments) as frame:
+        with self._sweep(shot) as sweep, Frame(self.device, *shot.size, attachments) as frame:
+            if sweep is not None:
+                sweep.draw(uniforms)
             frame.draw(program, uniforms, progress)
             images: list[Buffer] = [frame.read(index) for index in range(attachments)]
         if (images[0][..., 3] < 0.0).any():  # gpu.frame.UNDRAWN

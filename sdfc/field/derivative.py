@@ -21,16 +21,21 @@ Partials: TypeAlias = Callable[[FieldGraph, Expr], tuple[Expr | None, ...]]
 
 def directional(root: Expr, seeds: Mapping[Expr, Expr]) -> Expr:
     """The derivative of `root` when each key (an INPUT) moves at the rate that is its value; of the root's type."""
+    return tangents(root, seeds)[root.id] or _zeros(root.graph, root.type)
+
+
+def tangents(root: Expr, seeds: Mapping[Expr, Expr]) -> dict[int, Expr | None]:
+    """The derivatives of all nodes below `root`, by id; None is zero."""
     graph = root.graph
-    tangents: dict[int, Expr | None] = {}
+    found: dict[int, Expr | None] = {}
     for node in topological([root]):
         if node in seeds:
-            tangents[node.id] = _nonzero(_fit(seeds[node], node.type))
+            found[node.id] = _nonzero(_fit(seeds[node], node.type))
             continue
-        given = [tangents[a.id] for a in node.args]
+        given = [found[a.id] for a in node.args]
         tangent = None if all(t is None for t in given) else _tangent(graph, node, given)
-        tangents[node.id] = None if tangent is None else _nonzero(_fit(tangent, node.type))
-    return tangents[root.id] or _zeros(graph, root.type)
+        found[node.id] = None if tangent is None else _nonzero(_fit(tangent, node.type))
+    return found
 
 
 def gradient(root: Expr, point: Expr) -> Expr:

@@ -19,8 +19,9 @@ from sdfc.glsl.many import ManyWriter
 from sdfc.glsl.names import identifier, param_name
 from sdfc.glsl.proven import ProvenWriter, TraceText
 from sdfc.glsl.surface import SurfaceWriter
-from sdfc.plan.plan import CUT, FINE, GROW, HORIZON, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, Plan
+from sdfc.plan.plan import CUT, FINE, GROW, HORIZON, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, TILE, Plan
 from sdfc.plan.setting import Setting
+from sdfc.plan.steps import is_finite
 from sdfc.scene.model import Param
 from sdfc.shade.ambient import OCCLUSION_HEIGHTS
 from sdfc.shade.functions import FUNCTIONS
@@ -74,7 +75,10 @@ class _Assembly:
         looks = Looks(lowering, plan.materials, setting.unpainted)
         self._functions = Functions(graph, lowering, looks, (p.name for p in setting.params))
         self._lit = entry in ("picture", "radiance")
-        self._has_surface = entry != "depth"
+        self._is_cone = entry == "cone"
+        self._has_surface = entry not in ("depth", "cone")
+        # a shader that stands alone has nobody to sweep for it
+        self._prepass = plan.prepass and entry not in ("cone", "picture")
 
     def text(self, stage: str) -> str:
         suffix = {"fragment": "frag", "compute": "comp"}[stage]
@@ -86,11 +90,12 @@ class _Assembly:
         plan, tracer = self._plan, self._plan.tracer
         trace = TraceText("", False, False)
         many = ManyWriter(self._graph, self._functions, self._live, plan.materials, plan.rows_at_once)
-        if tracer.needs_steps:
+        if tracer.needs_steps and not self._is_cone:
             trace = ProvenWriter(self._graph, self._functions, self._live, many).write(plan.root)
-        has_map = tracer.needs_map or self._lit
-        distance = DistanceWriter(self._graph, self._functions, self._live, plan.slopes, many, tracer.needs_map)
-        map_text = distance.write(plan.root) if has_map else ""
+        traced = tracer.needs_map or self._is_cone
+        has_map = traced or self._lit
+        distance = DistanceWriter(self._graph, self._functions, self._live, plan.slopes, many, traced)
+        map_text = distance.write(plan.swept if self._is_cone else plan.root) if has_map else ""
         recorded = many if tracer.needs_steps else None
         surfaces = SurfaceWriter(self._graph, self._functions, self._live, plan.materials, recorded)
         surface = surfaces.write(plan.root) if self._has_surface else None
@@ -109,12 +114,16 @@ class _Assembly:
             "horizon": literal(HORIZON),
             "lift": literal(LIFT),
             "most_steps": self._most_steps(),
-            "needs_marching": trace.march or tracer.needs_map or bool(many.tables),
+            "needs_marching": trace.march or (tracer.needs_map and not self._is_cone) or bool(many.tables),
             "needs_map_library": "within(" in map_text or "box_distance" in map_text,
             "map": map_text,
             "tables": "\n".join(many.tables),
             "trace": trace,
-            "tracer_template": tracer.template,
+            "tracer_template": "" if self._is_cone else tracer.template,
+            "prepass": self._prepass,
+            "tile": TILE,
+            "sweep_is_finite": is_finite(plan.swept),
+            "first_start": "max(-travelled, cleared)" if self._prepass and not tracer.needs_steps else "-travelled",
             "parameter": {name: literal(value) for name, value in plan.choice.values.items()},
             "surface": surface,
         }
@@ -127,9 +136,9 @@ class _Assembly:
 
     def _camera(self, stage: str) -> dict[str, object]:
         """A shader that stands alone reads its camera from uniforms; ours come with a vertex stage that is cheaper."""
-        alone = self._entry == "picture"
+        kind = {"picture": "uniform", "cone": "tile"}.get(self._entry, "varying")
         return {
-            "camera_template": f"lib/camera_{'uniform' if alone else 'varying'}.glsl",
+            "camera_template": f"lib/camera_{kind}.glsl",
             "pixel_centre": "gl_FragCoord.xy" if stage == "fragment" else "vec2(gl_GlobalInvocationID.xy) + 0.5",
         }
 

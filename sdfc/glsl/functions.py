@@ -11,6 +11,7 @@ from typing import assert_never
 from sdfc.field.derivative import directional, gradient
 from sdfc.field.function import Function
 from sdfc.field.graph import Expr, FieldGraph, Type
+from sdfc.field.span import span
 from sdfc.glsl.names import LOCALS, Names, param_name
 from sdfc.plan.steps import Part
 from sdfc.shape.definition import Argument, Kind
@@ -28,6 +29,8 @@ _TYPES = {
     Kind.POINT3: Type.VEC3,
 }
 
+AHEAD = "ray length"  # of the piece of the ray: no name that a parameter of a field can have
+
 
 class Role(Enum):
     """What a function says of a definition; the value is the suffix of its name."""
@@ -38,6 +41,7 @@ class Role(Enum):
     DISTANCE_SLOPE = "_distance_slope"  # vec2: the formula and its derivative along d
     SURFACE = "_surface"  # vec4: gradient and value of a function with the surface as its zero set
     DISTANCE_SURFACE = "_distance_surface"  # vec4: gradient and value of the formula
+    SPAN = "_span"  # vec4: bounds of the formula, and of its slope along d, over a piece of the ray
     LOOK = "_look"  # float: the index of the material of an operation with several
     JOINED = "_of"  # float: a blend of two values
     WEIGHTS = "_weights"  # vec3: a blend's derivatives by its two operands, and its value
@@ -153,6 +157,10 @@ class Functions:
                 normal = gradient(value, p)
                 result = graph.vector(normal[0], normal[1], normal[2], value)
                 return Function(name, (point, *formal), result, doc)
+            case Role.SPAN:
+                ahead = graph.input(AHEAD, Type.FLOAT)
+                result = span(self._lowering.value(shape, p), p, d, ahead).vector
+                return Function(name, (point, ("d", Type.VEC3), (AHEAD, Type.FLOAT), *formal), result, doc)
             case Role.WEIGHTS | Role.JOINED:
                 raise AssertionError("a blend's functions are of its operands' values, not of a point")
             case _:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TypeAlias, assert_never
+from functools import partial
+from typing import assert_never
 
 from sdfc.facts.box import Box
 from sdfc.field.graph import Expr, FieldGraph, Type
@@ -28,8 +30,10 @@ from sdfc.plan.steps import (
     is_closed,
     leaves_of,
 )
+from sdfc.plan.touch import Side, are_thick_together, is_grown
 
-Names: TypeAlias = dict[tuple[int, bool], str]
+# how much larger the solid is: a constant of the templates, and its sign
+_SIZES = {Side.WHOLE: ("GROW", 1.0), Side.CORE: ("CUT", -1.0), Side.CUT: ("CUT", 1.0)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,17 +46,28 @@ class TraceText:
 
 
 @dataclass(frozen=True, slots=True)
+class Intervals:
+    """The ray's intervals with closed-form parts: names by part and side, declared in `body` as they are asked for."""
+
+    body: Body
+    names: dict[tuple[int, Side], str]
+
+
+@dataclass(frozen=True, slots=True)
 class Scope:
     """Where a step is written: the loop's body, the intervals and directions declared before it.
 
     Inside an intersection (`cut`) what is marched is sunk a little, by more than the film that coinciding faces leave,
-    and asked for all the digits that float32 has.
+    and asked for all the digits that float32 has. In a `core`, so is what is solved in closed form (sdfc/plan/touch).
     """
 
     body: Body
-    names: Names
+    intervals: Intervals
     directions: dict[int, Expr]
+    marched: dict[int, str]  # answers of what is marched, by step: asked once, also where its intersection asks twice
     cut: bool = False
+    core: bool = False
+    twice: bool = False
 
 
 class ProvenWriter:
@@ -106,20 +121,20 @@ class ProvenWriter:
     def _solids(self, components: list[Step]) -> None:
         """One loop for all: LLVM's time doubles with every loop of a shader (llvmpipe). What has hit stays."""
         body = Body(self._live)
-        names = self._intervals(body, Any(tuple(components)))
+        intervals = self._intervals(body, Any(tuple(components)))
         numbers = range(1, len(components) + 1)
-        for number, component in zip(numbers, components, strict=True):
-            body.add(f"float next_{number} = {self._start(component, names)};")
-        body.add("float t;")
-        body.add("bool moved;")
-        body.add("do {")
         inner = Body(self._live, 2)
         inner.add("moved = false;")
         for number, component in zip(numbers, components, strict=True):
             inner.add(f"t = next_{number};")
-            inner.add(f"next_{number} = {self._next(component, Scope(inner, names, {}))};")
+            inner.add(f"next_{number} = {self._next(component, Scope(inner, intervals, {}, {}))};")
             inner.add(f"moved = moved || (next_{number} > t && next_{number} < FAR);")
         inner.add("steps += 1.0;")
+        for number, component in zip(numbers, components, strict=True):
+            body.add(f"float next_{number} = {self._start(component, intervals)};")
+        body.add("float t;")
+        body.add("bool moved;")
+        body.add("do {")
         body.lines += inner.lines
         body.add("} while (moved);")
         body.add("float first = next_1;")
@@ -128,43 +143,52 @@ class ProvenWriter:
         body.add("return first;")
         self._function("float solids(vec3 o, vec3 d, float start)", body, "each cut solid from one event to the next")
 
-    def _intervals(self, body: Body, step: Step) -> Names:
-        """Declares the ray's intervals with every closed-form leaf and box below `step`; names by part and side."""
-        names: Names = {}
+    def _intervals(self, body: Body, step: Step) -> Intervals:
+        """Declares the ray's intervals with every closed-form leaf below `step`; cores only as they are asked for."""
+        intervals = Intervals(body, {})
         for leaf in leaves_of(step):
             match leaf:
-                case Closed(part=part, intervals=count, inside=inside) if (id(part), inside) not in names:
-                    name = part.name if inside else f"{part.name}_cut"
-                    type_ = Type.VEC2 if count == 1 else Type.VEC4
-                    body.declare(type_, name, self._interval_text(body, part, inside), part.span)
-                    names[id(part), inside] = name
+                case Closed():
+                    self._named(leaf, intervals)
                 case _:
                     pass
-        return names
+        return intervals
 
-    def _interval_text(self, body: Body, part: Part, inside: bool = True) -> str:
+    def _named(self, leaf: Closed, intervals: Intervals, core: bool = False) -> str:
+        """The name of the ray's intervals with a leaf."""
+        side = Side.CUT if not leaf.inside else Side.CORE if core else Side.WHOLE
+        part, body = leaf.part, intervals.body
+        if (id(part), side) not in intervals.names:
+            name = part.name + side.value
+            type_ = Type.VEC2 if leaf.intervals == 1 else Type.VEC4
+            body.declare(type_, name, self._interval_text(body, part, side), part.span)
+            intervals.names[id(part), side] = name
+        return intervals.names[id(part), side]
+
+    def _interval_text(self, body: Body, part: Part, side: Side = Side.WHOLE) -> str:
         q = body.point(own_point(part.inverse, self._o), f"o_{part.name}")
         dq = body.point(own_direction(part.inverse, self._d), f"d_{part.name}")
-        grow = body.text(part.own_grow * self._graph.input("GROW" if inside else "CUT", Type.FLOAT))
+        size, sign = _SIZES[side]
+        grow = body.text(sign * part.own_grow * self._graph.input(size, Type.FLOAT))
         return body.call(self._functions.of_part(part, Role.RAY), [q, dq, grow])
 
     # marching: what has no closed form
 
     def _march(self, root: Step) -> None:
         body = Body(self._live)
-        names = self._intervals(body, root)
+        intervals = self._intervals(body, root)
         self._boxes(body, root)
         directions = self._directions(body, root)
-        body.add(f"float t, next = {self._start(root, names)};")
-        body.add("do {")
         inner = Body(self._live, 2)
         inner.add("t = next;")
         inner.add("vec3 p = o + t * d;")
         inner.add("float eps = tolerance(t), fine = rounding(t);")
-        inner.add(f"next = {self._next(root, Scope(inner, names, directions))};")
+        inner.add(f"next = {self._next(root, Scope(inner, intervals, directions, {}))};")
         inner.add("steps += 1.0;")
         inner.add("evaluations += 1.0;")
         inner.add("count += 1;")
+        body.add(f"float t, next = {self._start(root, intervals)};")
+        body.add("do {")
         body.lines += inner.lines
         body.lines.insert(0, "    int count = 0;")
         body.add("} while (next > t && next < limit && count < MOST_STEPS);")
@@ -219,17 +243,17 @@ class ProvenWriter:
         body.declare(Type.VEC3, name, body.text(own))
         return self._graph.input(name)
 
-    def _start(self, step: Step, names: Names) -> str:
+    def _start(self, step: Step, intervals: Intervals) -> str:
         """Where marching may begin: what boxes and closed-form parts prove before any value is known."""
         match step:
             case Closed(inside=True):
-                return f"enter({names[id(step.part), step.inside]}, start)"
+                return f"enter({self._named(step, intervals)}, start)"
             case Within():
                 return f"enter({step.name}, start)"
             case Any() if step.steps:
-                return _chain("min", [self._start(s, names) for s in step.steps])
+                return _chain("min", [self._start(s, intervals) for s in step.steps])
             case All():
-                proved = [text for text in (self._start(s, names) for s in step.steps) if text != "start"]
+                proved = [text for text in (self._start(s, intervals) for s in step.steps) if text != "start"]
                 return _chain("max", proved) if proved else "start"
             case Closed() | Many() | Tangent() | Chord() | Ball() | Blend() | Any():
                 return "start"
@@ -241,9 +265,32 @@ class ProvenWriter:
     def _next(self, step: Step, scope: Scope) -> str:
         match step:
             case Closed():
-                return f"{'enter' if step.inside else 'leave'}({scope.names[id(step.part), step.inside]}, t)"
+                return f"{'enter' if step.inside else 'leave'}({self._named(step, scope.intervals, scope.core)}, t)"
             case Many():
                 raise AssertionError("many parts are members of the scene's union, which is solved by events")
+            case Tangent() | Chord() | Ball() | Blend():
+                return self._asked_once(step, scope)
+            case Within():
+                return f"inside({step.name}, t, {self._next(step.step, scope)})"
+            case Any():
+                return self._joined("min", "near", [self._next(s, scope) for s in step.steps], scope)
+            case All():
+                return self._all(step, replace(scope, cut=True))
+            case _:
+                assert_never(step)
+
+    def _asked_once(self, step: Tangent | Chord | Ball | Blend, scope: Scope) -> str:
+        """The answer; a name for it in an intersection that asks twice, of the solid and of its core."""
+        if not scope.twice:
+            return self._marched(step, scope)
+        if id(step) not in scope.marched:
+            self._count += 1
+            scope.marched[id(step)] = name = f"near_{self._count}"
+            scope.body.add(f"float {name} = {self._marched(step, scope)};")
+        return scope.marched[id(step)]
+
+    def _marched(self, step: Tangent | Chord | Ball | Blend, scope: Scope) -> str:
+        match step:
             case Tangent():
                 value = self._blends.slope(scope.body, step.part, scope.directions[id(step.part)])
                 return f"tangent(t, {f'vec2(3.0 * fine, 0.0) + {value}' if scope.cut else value}, fine)"
@@ -253,19 +300,13 @@ class ProvenWriter:
                 return self._ball(step, scope)
             case Blend():
                 return self._blends.next(scope.body, step, scope.directions, scope.cut)
-            case Within():
-                return f"inside({step.name}, t, {self._next(step.step, scope)})"
-            case Any():
-                return self._joined("min", "near", step.steps, scope)
-            case All():
-                return self._joined("max", "far", step.steps, replace(scope, cut=True))
             case _:
                 assert_never(step)
 
-    def _joined(self, operation: str, label: str, steps: tuple[Step, ...], scope: Scope) -> str:
-        if not steps:
+    def _joined(self, operation: str, label: str, texts: list[str], scope: Scope) -> str:
+        """The least or the greatest of texts: in a statement each where they are many."""
+        if not texts:
             return "FAR"
-        texts = self._operands(operation, steps, scope)
         if len(texts) <= 3:
             return _chain(operation, texts)
         self._count += 1
@@ -275,14 +316,39 @@ class ProvenWriter:
             scope.body.add(f"{name} = {operation}({name}, {text});")
         return name
 
-    def _operands(self, operation: str, steps: tuple[Step, ...], scope: Scope) -> list[str]:
-        """One text a step; the convex closed-form parts of an intersection meet in one interval first."""
-        texts: list[str] = []
-        convex = [s for s in steps if isinstance(s, Closed) and s.inside and s.intervals == 1]
-        if operation == "max" and len(convex) > 1:
-            texts.append(f"enter({_chain('both', [scope.names[id(s.part), True] for s in convex])}, t)")
-            steps = tuple(s for s in steps if s not in convex)
-        return texts + [self._next(s, scope) for s in steps]
+    # intersections: the parts that are grown, and the rest
+
+    def _all(self, step: All, scope: Scope) -> str:
+        convex = [s for s in step.steps if isinstance(s, Closed) and s.inside and s.intervals == 1]
+        others = [s for s in step.steps if s not in convex]
+        grown = [partial(self._convex, convex)] if convex else []
+        grown += [partial(self._next, s) for s in others if is_grown(s)]
+        met = len(grown) > 1 and not scope.core
+        texts = [self._met(grown, scope)] if met else [ask(scope) for ask in grown]
+        texts += [self._next(s, scope) for s in others if not is_grown(s)]
+        return self._joined("max", "far", texts, scope)
+
+    def _met(self, grown: Sequence[Callable[[Scope], str]], scope: Scope) -> str:
+        """What is in all, and but for one of them in their cores: the least of the greatest, part by part."""
+        scope = replace(scope, twice=True)
+        deep = replace(scope, core=True)
+        met, core = grown[0](scope), grown[0](deep)
+        for ask in grown[1:]:
+            self._count += 1
+            name = f"far_{self._count}"
+            whole, other = ask(scope), ask(deep)
+            scope.body.add(f"float {name} = min(max({met}, {other}), max({core}, {whole}));")
+            met, core = name, f"max({core}, {other})"
+        return met
+
+    def _convex(self, steps: list[Closed], scope: Scope) -> str:
+        """The convex closed-form parts of an intersection: they meet in one interval first."""
+        names = [self._named(s, scope.intervals, scope.core) for s in steps]
+        if scope.core or len(steps) == 1 or are_thick_together([s.part for s in steps], self._graph):
+            return f"enter({_chain('both', names)}, t)"
+        cores = [self._named(s, scope.intervals, core=True) for s in steps]
+        pairs = [f"vec4({name}, {core})" for name, core in zip(names, cores, strict=True)]
+        return f"enter({_chain('meeting', pairs)}.xy, t)"
 
     def _chord(self, step: Chord, body: Body, direction: Expr) -> str:
         """The value is looked at once more, where the tangent (or the part's box) ends."""

@@ -77,6 +77,10 @@ class Frame:
         program.draw()
         self.device.context.finish()
 
+    def bind(self, unit: int = 0, attachment: int = 0) -> None:
+        """Let the programs that are drawn next read an image, as texture `unit`."""
+        self._images[attachment].use(unit)
+
     def read(self, attachment: int = 0) -> NDArray[np.float32]:
         """One image as float32 (height, width, 4), rows from the top."""
         import numpy as np

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TypeAlias
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +28,8 @@ void main() { origin_out = vec4(ray_origin, 0.0); }
 class Picture:
     """What the tracer answered for n rays, and the rays themselves: the float32 numbers that it had, as float64.
 
-    `o`, `d`, `normal` are (3, n); `depth` is the t of o + t d, NaN for a miss; `steps` and `material` (n,).
+    `o`, `d`, `normal` are (3, n); `depth` is the t of o + t d, NaN for a miss; `steps`, `material`, `unfinished` (n,):
+    whether a ray was given up at the most steps that it may take, whatever was answered.
     """
 
     o: Array
@@ -38,6 +39,7 @@ class Picture:
     normal: Array
     steps: Array
     material: Array
+    unfinished: Mask
 
     def some(self, index: NDArray[np.intp] | Mask | slice) -> Picture:
         """Some of the rays."""
@@ -49,6 +51,7 @@ class Picture:
             self.normal[:, index],
             self.steps[index],
             self.material[index],
+            self.unfinished[index],
         )
 
     @property
@@ -70,14 +73,26 @@ class Tracing:
         size: tuple[int, int],
         view: View = View(),  # noqa: B008 (frozen)
         params: dict[str, tuple[float, ...]] | None = None,
+        finer: float = 1.0,
     ) -> Picture:
-        """Every pixel's ray, rows from the top."""
+        """Every pixel's ray, rows from the top. `finer`: judged as a pixel that many times smaller."""
         shot = Shot(compiled, view, params or {}, size)
-        first, normal, _, direction = (a.astype(np.float64) for a in self.renderer.probe(shot, None))
+        first, normal, direction = (a.astype(np.float64) for a in self._probed(shot, finer))
         flat = [np.moveaxis(a[..., :3], -1, 0).reshape(3, -1) for a in (normal, direction)]
-        hit = first[..., 3].ravel() > 0.5
-        depth = np.where(hit, first[..., 0].ravel() / compiled.plan.radius, np.nan)
-        return Picture(self._starts(shot), flat[1], hit, depth, flat[0], first[..., 1].ravel(), first[..., 2].ravel())
+        depth, steps, material, answer = (np.ascontiguousarray(v) for v in np.moveaxis(first.reshape(-1, 4), -1, 0))
+        hit = answer > 0.5
+        depth = np.where(hit, depth / compiled.plan.radius, np.nan)
+        unfinished = (answer != 0.0) & (answer != 1.0)
+        return Picture(self._starts(shot), flat[1], hit, depth, flat[0], steps, material, unfinished)
+
+    def _probed(self, shot: Shot, finer: float) -> list[NDArray[np.floating]]:
+        """The first hits, normals and directions."""
+        with self.renderer.prepared(shot, "probe", 4) as prepared:
+            pixel: Any = prepared.uniforms["pixel"]
+            finest = {"pixel": (pixel[0] / finer, pixel[1] / finer, pixel[2])}
+            prepared = replace(prepared, uniforms={**prepared.uniforms, **finest})
+            prepared.draw()
+            return [prepared.read(index) for index in (0, 1, 3)]
 
     def _starts(self, shot: Shot) -> Array:
         vertex = shot.compiled.vertex()

@@ -6,7 +6,21 @@ from typing import assert_never
 
 from sdfc.passes.own_origin import Frame
 from sdfc.plan.plan import Plan
-from sdfc.plan.steps import All, Any, Ball, Blend, Chord, Closed, Many, Step, Tangent, Within, is_closed, leaves_of
+from sdfc.plan.steps import (
+    All,
+    Any,
+    Ball,
+    Blend,
+    Chord,
+    Closed,
+    Many,
+    Part,
+    Step,
+    Tangent,
+    Within,
+    is_closed,
+    leaves_of,
+)
 from sdfc.scene.model import Scene
 
 
@@ -43,15 +57,21 @@ def _tree(step: Step, depth: int) -> list[str]:
         case Many():
             return [f"{pad}{len(step.members)} of {step.name}: closed form, 1 interval a ray; a row of a table each"]
         case Tangent():
-            return [f"{pad}{step.part.name} ({step.part.span}): tangents, its function is convex"]
+            return [f"{pad}{step.part.name} ({step.part.span}): tangents, its function is convex{_left_out(step.part)}"]
         case Chord():
-            return [f"{pad}complement of {step.part.name} ({step.part.span}): chords, its function is convex"]
+            return [f"{pad}complement of {step.part.name} ({step.part.span}): chords, its function is convex{_left_out(step.part)}"]
         case Ball():
             side = "" if step.inside else "complement of "
-            reason = f"Lipschitz balls, constant {step.lipschitz:.4g}: curvature unknown"
+            reason = f"Lipschitz balls, constant {step.lipschitz:.4g}: curvature unknown{_left_out(step.part)}"
             return [f"{pad}{side}{step.part.name} ({step.part.span}): {reason}"]
         case Blend():
             reason = "the blend of lines below its operands (tangents, where they are convex), which is concave"
             return [f"{pad}{step.part.name} ({step.part.span}): {reason}"]
         case _:
             assert_never(step)
+
+
+def _left_out(part: Part) -> str:
+    """A primitive with a ray claim is marched only where the claim is dear, and the options leave such claims out."""
+    known = part.shape.definition.is_primitive and part.shape.definition.claims.ray is not None
+    return "; a closed form is known, dearer here than marching" if known else ""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from sdfc.plan.cluster import CLUSTER, rows_at_once, turns
-from sdfc.plan.steps import Any, Closed, Many, Step, leaves_of
+from sdfc.plan.steps import Any, Closed, Many, Step, is_closed, leaves_of
 from sdfc.shape.material import Material
 from sdfc.tracers.record import Choice, Tracer
 
@@ -16,6 +17,7 @@ SMALLEST_TOLERANCE = 2.0**-19  # sixteen roundings of numbers up to one
 FINE = 1.0 / 64.0  # of half a pixel: what every tracer is asked for, so that times compare at equal error
 LIFT = 2.0**-17  # how far shadow rays start above the surface: clear of CUT and of rounding
 HORIZON = 1e5  # how far rays are marched in a scene without end
+TILE = 8  # pixels across a tile of the cone prepass (ALGORITHMS B7)
 MOST_LOOPS = 60000  # llvmpipe stops all loops of an invocation together at 65 535 (GL.md 0)
 
 
@@ -30,11 +32,26 @@ class Plan:
     radius: float
     centre: tuple[float, float, float]
     is_finite: bool  # the whole scene lies in the unit ball of its own coordinates
+    prepass: bool = False  # whether tiles of pixels are told first how far they are empty
     budget: int | None = None  # a measurer's limit on the passes of a ray's loops
 
     @property
     def tracer(self) -> Tracer:
         return self.choice.tracer
+
+    @property
+    def swept(self) -> Step:
+        """What a cone prepass must find empty: all that the tracer marches."""
+        if not self.tracer.needs_steps:
+            return self.root
+        steps = self.root.steps if isinstance(self.root, Any) else (self.root,)
+        return Any(tuple(s for s in steps if not is_closed(s)))
+
+    @property
+    def can_sweep(self) -> bool:
+        """Whether a prepass is legal, and not idle: something is marched, and all of it has a bound on its distance."""
+        parts = [leaf.part for leaf in leaves_of(self.swept)]
+        return bool(parts) and all(math.isfinite(self.slopes[id(part)]) for part in parts)
 
     @property
     def events(self) -> int:

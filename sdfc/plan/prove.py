@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass
-from typing import assert_never
+from typing import Literal, TypeAlias, assert_never
 
 from sdfc.diagnostics import SceneError, scene_error
 from sdfc.facts.bounds import Bounds
@@ -35,6 +35,8 @@ from sdfc.shape.lower import lower_ray
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
 from sdfc.shape.stretch import largest_stretch, smallest_stretch
+
+Rays: TypeAlias = Literal["cheap", "all"]
 
 _OURS = frozenset({"bounds", "solid", "live", "joined", "near", "far"})  # generated names begin so, and end in a number
 
@@ -82,13 +84,16 @@ def unwrapped(shape: Shape) -> Leaf | None:
 
 
 class Prover:
-    """Builds the step tree of one scene."""
+    """Builds the step tree of one scene. `rays`: which closed forms it uses, those that are dear among them or not."""
 
-    def __init__(self, values: FieldGraph, bounds: Bounds, lipschitz: Lipschitz, unpainted: Material) -> None:
+    def __init__(
+        self, values: FieldGraph, bounds: Bounds, lipschitz: Lipschitz, unpainted: Material, rays: Rays
+    ) -> None:
         self._values = values
         self._bounds = bounds
         self._lipschitz = lipschitz
         self._unpainted = unpainted
+        self._rays = rays
         self._names: Counter[str] = Counter()
         self._parts: dict[tuple[int, int], Part] = {}
         self._convex: frozenset[int] = frozenset()
@@ -138,7 +143,7 @@ class Prover:
     def _leaf(self, leaf: Leaf, domain: Box) -> Step:
         part = self.part(leaf)
         claims = leaf.shape.definition.claims
-        if claims.ray is not None:
+        if claims.ray is not None and (self._rays == "all" or not claims.ray_is_dear):
             return Closed(part, self._intervals(leaf.shape), leaf.inside)
         if leaf.inside and self._is_tangent(leaf.shape):
             return Tangent(part)

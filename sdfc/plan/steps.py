@@ -8,7 +8,7 @@ an intersection the greatest; a ray hits where the tree answers t, and misses wh
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TypeAlias, assert_never
 
 from sdfc.diagnostics import Span
 from sdfc.facts.box import Box
@@ -143,6 +143,27 @@ class All:
 
 
 Step: TypeAlias = Closed | Many | Tangent | Chord | Ball | Blend | Within | Any | All
+
+
+def is_finite(step: Step) -> bool:
+    """Whether all that the step may find is in a box that is known."""
+    match step:
+        case Closed(inside=inside) | Ball(inside=inside):
+            return inside and step.part.box.is_finite
+        case Tangent() | Blend():
+            return step.part.box.is_finite
+        case Chord():
+            return False
+        case Many():
+            return all(is_finite(m) for m in step.members)
+        case Within():
+            return step.box.is_finite
+        case Any():
+            return all(is_finite(s) for s in step.steps)
+        case All():
+            return any(is_finite(s) for s in step.steps)
+        case _:
+            assert_never(step)
 
 
 def is_closed(step: Step) -> bool:

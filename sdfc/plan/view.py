@@ -57,6 +57,7 @@ def uniforms_of(
         "axis_z": ahead,
         "window": (float(width), float(rows), *jitter),
         "pixel": pixel,
+        "tile_starts": 0.0,  # the texture unit of the cone prepass
     }
     for param in scene.params:
         value = values[param.name]

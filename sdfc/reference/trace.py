@@ -23,8 +23,8 @@ from sdfc.plan.steps import (
     Tangent,
     Within,
     is_closed,
-    leaves_of,
 )
+from sdfc.plan.touch import Side, is_grown
 from sdfc.reference.formulas import Formulas, Interval
 from sdfc.reference.rays import Rays, box_interval
 from sdfc.shape.lower import FAR
@@ -33,6 +33,7 @@ Array = NDArray[np.float64]
 
 GROW = 1e-12  # solids are this much larger, so that parts that touch leave no crack; in units of the scene's radius
 CUT = 4e-12  # what is cut away is this much larger, so that faces that coincide leave no film
+_SIZES = {Side.WHOLE: GROW, Side.CORE: -CUT, Side.CUT: CUT}
 SHY = 1.0 - 1e-12  # a step stays this much short of what is proved, for the rounding of the proof
 MARGIN = 1e-6  # boxes are this much larger than what they hold
 MOST_STEPS = 4096
@@ -46,7 +47,8 @@ SMALLEST_TOLERANCE = 2.0**-22
 class _Walk:
     """What is known of some rays before the first step."""
 
-    intervals: dict[tuple[int, bool], list[Interval]]
+    rays: Rays
+    intervals: dict[tuple[int, Side], list[Interval]]
     boxes: dict[int, tuple[Array, Array]]
 
 
@@ -99,7 +101,7 @@ class StepTracer:
         for _ in range(MOST_STEPS):
             if not here.index.size:
                 break
-            answer = self._next(member, walk, here, cut=False)
+            answer = self._next(member, walk, here)
             counts[here.index] += 1.0
             t[here.index] = answer
             going = np.flatnonzero((answer > here.t) & (answer < limit[here.index]))
@@ -109,22 +111,22 @@ class StepTracer:
         return np.where(t < limit, t, FAR), counts
 
     def _walk(self, member: Step, rays: Rays) -> _Walk:
-        intervals: dict[tuple[int, bool], list[Interval]] = {}
-        for leaf in leaves_of(member):
-            match leaf:
-                case Closed(part=part, inside=inside) if (id(part), inside) not in intervals:
-                    grow = GROW if inside else CUT
-                    intervals[id(part), inside] = self._formulas.intervals(part, rays.o, rays.d, grow)
-                case _:
-                    pass
         boxes = {id(step): box_interval(rays, box) for step, box in _boxes_below(member)}
-        return _Walk(intervals, boxes)
+        return _Walk(rays, {}, boxes)
+
+    def _intervals(self, leaf: Closed, walk: _Walk, core: bool = False) -> list[Interval]:
+        """The rays' intervals with a leaf, found when they are first asked for."""
+        side = Side.CUT if not leaf.inside else Side.CORE if core else Side.WHOLE
+        key = id(leaf.part), side
+        if key not in walk.intervals:
+            walk.intervals[key] = self._formulas.intervals(leaf.part, walk.rays.o, walk.rays.d, _SIZES[side])
+        return walk.intervals[key]
 
     def _start(self, step: Step, walk: _Walk, start: Array) -> Array:
         """Where stepping may begin: what boxes and closed-form parts prove before any value is known."""
         match step:
             case Closed(inside=True):
-                return _enter(walk.intervals[id(step.part), True], start)
+                return _enter(self._intervals(step, walk), start)
             case Within():
                 enter, leave = walk.boxes[id(step)]
                 return _enter([Interval(enter, leave)], start)
@@ -135,15 +137,15 @@ class StepTracer:
             case _:
                 return start.copy()
 
-    def _next(self, step: Step, walk: _Walk, here: _Place, cut: bool) -> Array:
+    def _next(self, step: Step, walk: _Walk, here: _Place, cut: bool = False, core: bool = False) -> Array:
         """The answers of a step, (n,).
 
         Inside an intersection (`cut`) what is marched is sunk a little: by more than a film is thick that faces leave
-        which coincide.
+        which coincide. In a `core`, so is what is solved in closed form (sdfc/plan/touch).
         """
         match step:
             case Closed():
-                intervals = walk.intervals[id(step.part), step.inside]
+                intervals = self._intervals(step, walk, core)
                 taken = [Interval(i.enter[here.index], i.leave[here.index]) for i in intervals]
                 return _enter(taken, here.t) if step.inside else _leave(taken, here.t)
             case Tangent():
@@ -155,33 +157,45 @@ class StepTracer:
             case Blend():
                 return self._blend(step, here, cut)
             case Within():
-                return self._within(step, walk, here, cut)
+                return self._within(step, walk, here, cut, core)
             case Any() | Many():
-                answers = [self._next(s, walk, here, cut) for s in members_of(step)]
+                answers = [self._next(s, walk, here, cut, core) for s in members_of(step)]
                 return _least(answers) if answers else np.full(len(here.t), FAR)
             case All():
-                return self._all(step, walk, here)
+                return self._all(step, walk, here, core)
             case _:
                 assert_never(step)
 
-    def _all(self, step: All, walk: _Walk, here: _Place) -> Array:
+    def _all(self, step: All, walk: _Walk, here: _Place, core: bool) -> Array:
         """The greatest answer; where one part already answers further on, the dearer ones are not asked."""
-        answer = here.t.copy()
-        undecided = np.arange(len(here.t))
-        for part in sorted(step.steps, key=lambda s: not is_closed(s)):
-            asked = here if undecided.size == len(here.t) else here.take(undecided)
-            answer[undecided] = np.maximum(answer[undecided], self._next(part, walk, asked, cut=True))
-            undecided = np.flatnonzero(answer <= here.t)
+        grown = [s for s in step.steps if is_grown(s)]
+        met = len(grown) > 1 and not core
+        answer = self._met(grown, walk, here) if met else here.t.copy()
+        undecided = np.flatnonzero(answer <= here.t)
+        rest = [s for s in step.steps if not (met and is_grown(s))]
+        for part in sorted(rest, key=lambda s: not is_closed(s)):
             if not undecided.size:
                 break
+            asked = here if undecided.size == len(here.t) else here.take(undecided)
+            answer[undecided] = np.maximum(answer[undecided], self._next(part, walk, asked, cut=True, core=core))
+            undecided = np.flatnonzero(answer <= here.t)
         return answer
 
-    def _within(self, step: Within, walk: _Walk, here: _Place, cut: bool) -> Array:
+    def _met(self, grown: list[Step], walk: _Walk, here: _Place) -> Array:
+        """What is in all, and but for one of them in their cores: the least of the greatest, part by part."""
+        wholes, cores = ([self._next(s, walk, here, cut=True, core=core) for s in grown] for core in (False, True))
+        met, core = wholes[0], cores[0]
+        for whole, other in zip(wholes[1:], cores[1:], strict=True):
+            met = np.minimum(np.maximum(met, other), np.maximum(core, whole))
+            core = np.maximum(core, other)
+        return met
+
+    def _within(self, step: Within, walk: _Walk, here: _Place, cut: bool, core: bool) -> Array:
         enter, leave = (end[here.index] for end in walk.boxes[id(step)])
         answer = np.where((here.t < enter) & (enter < leave), enter, FAR)
         inside = np.flatnonzero((here.t >= enter) & (here.t < leave))
         if inside.size:
-            ahead = self._next(step.step, walk, here.take(inside), cut)
+            ahead = self._next(step.step, walk, here.take(inside), cut, core)
             answer[inside] = np.where(ahead < leave[inside], ahead, FAR)
         return answer
 

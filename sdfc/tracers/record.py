@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +34,7 @@ class Tracer:
     needs_steps: bool  # whether it reads the generated `events` and `march`
     needs_span: bool = False  # whether it reads `vec4 map_span(vec3 p, vec3 d, float s)`
     parameters: tuple[Parameter, ...] = ()
+    weak: Mapping[str, str] = field(default_factory=dict)  # families of `sdfc stress` it may fail in, and why
 
     @property
     def template(self) -> str:

@@ -8,7 +8,10 @@ void main() {
     vec3 o, d;
     camera_ray(o, d);
     travelled = rebase(o, d);
-    float t = trace(o, d, -travelled, FAR);
+{% if prepass %}
+    look_up_tile();
+{% endif %}
+    float t = trace(o, d, {{ first_start }}, FAR);
     bool hit = t < FAR;
     float sure = 0.25 * unfinished;  // 1 and 0 are hit and miss, 0.75 and 0.25 what was answered at MOST_STEPS
     first_out = hit ? vec4((travelled + t) * RADIUS, steps, evaluations, 1.0 - sure) : vec4(-1.0, steps, evaluations, sure);

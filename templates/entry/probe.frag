@@ -11,10 +11,13 @@ void main() {
     vec3 o, d;
     camera_ray(o, d);
     travelled = rebase(o, d);
-    float t = trace(o, d, -travelled, FAR);
+{% if prepass %}
+    look_up_tile();
+{% endif %}
+    float t = trace(o, d, {{ first_start }}, FAR);
     bool hit = t < FAR;
     vec3 p = o + t * d;
-    Surface s = surface(hit ? p : vec3(0.0));
+    Surface s = surface(hit ? p : vec3(0.0), d, rounding(t));
 {% filter indent(4, true) %}
 {% include "shade/polish.glsl" %}
 {% endfilter %}

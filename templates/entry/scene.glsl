@@ -34,6 +34,10 @@ void prepare() {
 {% include "lib/intervals.glsl" %}
 
 {% include "lib/tolerance.glsl" %}
+{% if prepass %}
+
+{% include "lib/prepass.glsl" %}
+{% endif %}
 
 {% if needs_marching %}
 {% include "lib/marching.glsl" %}
@@ -53,7 +57,9 @@ void prepare() {
 {{ map }}
 {% endif %}
 {{ trace.functions }}
+{% if tracer_template %}
 {% include tracer_template %}
+{% endif %}
 
 {% if surface %}
 {{ surface.structure }}

@@ -37,7 +37,10 @@ vec4 radiance() {
     vec3 o, d;
     camera_ray(o, d);
     travelled = rebase(o, d);
-    float start = -travelled, limit = FAR;
+{% if prepass %}
+    look_up_tile();
+{% endif %}
+    float start = {{ first_start }}, limit = FAR;
     vec3 view = -d, p = vec3(0.0), normal = vec3(0.0), toward = vec3(0.0), irradiance = vec3(0.0), seen = vec3(0.0);
     Surface s;
     bool hit = false;
@@ -47,7 +50,7 @@ vec4 radiance() {
         if (light < 0) {
             hit = t < FAR;
             p = o + t * d;
-            s = surface(hit ? p : vec3(0.0));
+            s = surface(hit ? p : vec3(0.0), d, rounding(t));
 {% filter indent(12, true) %}
 {% include "shade/polish.glsl" %}
 {% endfilter %}
@@ -66,6 +69,9 @@ vec4 radiance() {
         light_at(light, o, toward, limit, irradiance);
         d = toward;
         start = 0.0;
+{% if prepass %}
+        cleared = -FAR;
+{% endif %}
 {% endif %}
     } while (hit && light < {{ lights | length }});
     if (!hit) {

@@ -7,7 +7,7 @@ float trace(vec3 o, vec3 d, float start, float limit) {
     float first = FAR;
 {% endif %}
 {% if trace.march %}
-    first = min(first, march(o, d, start, min(first, limit)));
+    first = min(first, march(o, d, {{ "max(start, cleared)" if prepass else "start" }}, min(first, limit)));
 {% endif %}
     return first < limit ? first : FAR;
 }

@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdfc import pipeline
-from sdfc.field.graph import Expr
+from sdfc.field.graph import Expr, Type
 from sdfc.field.numeric import Evaluator
 from sdfc.pipeline import Compiled
+from sdfc.plan.prove import Rays
 from sdfc.reference.events import Both, Either, FirstRun, Leaf, Solid, Without, first_runs
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Paint, Shape, Union, topological
-from sdfc.shape.lower import lower_ray
+from sdfc.shape.lower import lower_gauge, lower_ray
 from sdfc.shape.stretch import largest_stretch
 
 Array: TypeAlias = NDArray[np.float64]
@@ -39,13 +40,10 @@ class ClosedTruth:
     contested: Mask
 
 
-def is_closed_form(shape: Shape) -> bool:
-    """Whether every leaf of the shape has ray intervals in closed form."""
-    return all(
-        not node.children and node.definition.claims.ray is not None
-        for node in topological(shape)
-        if isinstance(node, Apply)
-    )
+def is_closed_form(shape: Shape, rays: Rays = "cheap") -> bool:
+    """Whether every leaf of the shape has ray intervals in closed form, among those that a plan with `rays` uses."""
+    claims = [node.definition.claims for node in topological(shape) if isinstance(node, Apply)]
+    return all(c.ray is not None and (rays == "all" or not c.ray_is_dear) for c in claims)
 
 
 def closed_truth(compiled: Compiled, o: Array, d: Array, near: float, thin: float) -> ClosedTruth:
@@ -102,4 +100,30 @@ class _Builder:
         pairs = lower_ray(shape, o, d, grow)
         ends = Evaluator([end for pair in pairs for end in pair])(self._inputs, self._params)
         enter, leave = (np.stack([np.broadcast_to(e, (self._count,)) for e in ends[side::2]]) for side in (0, 1))
+        if shape.definition.claims.ray_is_dear:
+            enter, leave = self._sharpened(shape, o, d, grow, enter, leave)
         return Leaf(np.where(np.abs(enter) > 9e8, np.sign(enter) * np.inf, enter), np.where(leave > 9e8, np.inf, leave))
+
+    def _sharpened(
+        self, shape: Apply, o: Expr, d: Expr, grow: Expr, enter: Array, leave: Array
+    ) -> tuple[Array, Array]:
+        """Ends that are right to float32's last digits, as iterations made for it leave them, to float64's."""
+        t = self._scene.values.input("t", Type.FLOAT)
+        gauge = Evaluator([lower_gauge(shape, o + t * d) - grow])
+
+        def at(value: Array) -> Array:
+            rows = [gauge({**self._inputs, "t": row}, self._params)[0] for row in value]
+            return np.stack([np.broadcast_to(row, (self._count,)) for row in rows])
+
+        some = enter < leave
+        middle, half = np.where(some, (enter + leave) / 2, 0.0), np.where(some, (leave - enter) / 2, 0.0)
+        ends = []
+        for end, outward in ((enter, -1.25), (leave, 1.25)):
+            low, high = middle, middle + outward * half
+            clear = some & (at(low) < 0) & (at(high) > 0)
+            for _ in range(60):
+                between = (low + high) / 2
+                inside = at(between) < 0
+                low, high = np.where(inside, between, low), np.where(inside, high, between)
+            ends.append(np.where(clear, (low + high) / 2, end))
+        return ends[0], ends[1]
