@@ -11,6 +11,7 @@ from typing import Literal
 
 from sdfc.diagnostics import InternalError, SceneError, Source, scene_error
 from sdfc.facts.bounds import Bounds
+from sdfc.facts.bend import Bends
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.ranges import Ranges
 from sdfc.passes.flatten import flatten
@@ -41,6 +42,7 @@ class Options:
     tracer: str = "proven"  # with values for its parameters, where wanted: `relaxed:omega=1.4`
     rays: Rays = "cheap"  # "all": closed-form ray intervals even where marching is cheaper on a CPU
     prepass: bool = False  # tiles of pixels are told first how far they are empty, where that is legal
+    without: tuple[str, ...] = ()  # passes not to run: to see what they are worth
     most_steps: int | None = None  # fewer passes of the loops than the compiler would allow: a measurer's budget
 
 
@@ -120,14 +122,14 @@ PASSES = (
 )
 
 
-def normalise(scene: Scene, after: str | None = None) -> tuple[Shape, Workshop]:
-    """The scene's shape after all passes, or after the one named."""
+def normalise(scene: Scene, after: str | None = None, without: tuple[str, ...] = ()) -> tuple[Shape, Workshop]:
+    """The scene's shape after all passes, or after the one named; `without` some."""
     ranges = Ranges({p.name: _range_of(p.default, p.low, p.high) for p in scene.params})
     workshop = Workshop(scene, Bounds(scene.values, ranges), ranges, Library(scene.values))
     root = scene.root
     with deep_recursion():
         for step in PASSES:
-            root = step.run(root, workshop)
+            root = root if step.name in without else step.run(root, workshop)
             if step.name == after:
                 break
     return root, workshop
@@ -192,7 +194,7 @@ class Compiled:
 
 def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:
     """Prove what can be proved, choose, and be ready to print. Raises SceneError where nothing can be proved."""
-    root, workshop = normalise(scene)
+    root, workshop = normalise(scene, without=options.without)
     frame = workshop.frame
     assert frame is not None
     try:
@@ -200,7 +202,8 @@ def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:
             lipschitz = Lipschitz(workshop.ranges, workshop.bounds)
             setting = setting_of(scene, frame)
             chosen = choice(options.tracer)
-            prover = Prover(scene.values, workshop.bounds, lipschitz, setting.unpainted, options.rays)
+            bends = Bends(workshop.ranges, workshop.bounds, lipschitz) if chosen.tracer.needs_steps else None
+            prover = Prover(scene.values, workshop.bounds, lipschitz, setting.unpainted, options.rays, bends)
             steps = prover.prove(root)
             plan = Plan(
                 steps,

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
 
+from sdfc.cache import folder as cache_folder
 from sdfc.diagnostics import DeviceError
 from sdfc.gpu.device import Device, install_command, open_device
 from sdfc.gpu.examine import Finding
@@ -70,7 +71,7 @@ def _folders() -> dict[str, str]:
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     mesa = Path(os.environ.get("MESA_SHADER_CACHE_DIR") or cache) / "mesa_shader_cache"
     disabled = os.environ.get("MESA_SHADER_CACHE_DISABLE", "").lower() in ("1", "true")
-    return {"driver's cache": "switched off" if disabled else _state(mesa), "sdfc's cache": _state(cache / "sdfc")}
+    return {"driver's cache": "switched off" if disabled else _state(mesa), "sdfc's cache": _state(cache_folder())}
 
 
 def _state(folder: Path) -> str:

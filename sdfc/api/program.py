@@ -11,6 +11,7 @@ from warnings import warn
 
 from sdfc.api.renderer import GlRenderer, Progress, Renderer, Shot
 from sdfc.api.request import (
+    AUTO,
     Setting,
     View,
     checked_names,
@@ -25,13 +26,13 @@ from sdfc.image.picture import AOVS, Image
 
 if TYPE_CHECKING:
     from sdfc.image.picture import Array
-    from sdfc.pipeline import Compiled
+    from sdfc.pipeline import Compiled, Options
     from sdfc.plan.prove import Rays
     from sdfc.scene.model import Param, Scene
 
 BACKENDS = ("auto", "gl", "cpu")
 DEFAULT_SIZE = (1280, 720)
-DEFAULT_TRACER = "proven"
+DEFAULT_TRACER = AUTO
 
 
 class Program:
@@ -39,7 +40,7 @@ class Program:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self._compiled: dict[tuple[str, Rays], Compiled] = {}
+        self._compiled: dict[Options, Compiled] = {}
         self._renderers: dict[str, Renderer] = {}
         self._close = weakref.finalize(self, _close_all, self._renderers)
 
@@ -55,13 +56,17 @@ class Program:
 
     def compiled(self, tracer: str = DEFAULT_TRACER, rays: Rays = "cheap") -> Compiled:
         """The compiler's result for a tracer, made once. `rays`: whether closed forms that are dear are used too."""
-        key = tracer, rays
-        if key not in self._compiled:
+        from sdfc.pipeline import Options
+
+        checked = checked_tracer(tracer)
+        return self._compiled_as(Options(rays=rays) if checked == AUTO else Options(tracer=checked, rays=rays))
+
+    def _compiled_as(self, options: Options) -> Compiled:
+        if options not in self._compiled:
             from sdfc import pipeline
 
-            checked_tracer(tracer)
-            self._compiled[key] = pipeline.compile_scene(self.scene, pipeline.Options(tracer=tracer, rays=rays))
-        return self._compiled[key]
+            self._compiled[options] = pipeline.compile_scene(self.scene, options)
+        return self._compiled[options]
 
     def glsl(self, target: str = "glsl450", stage: str = "fragment", tracer: str = DEFAULT_TRACER) -> str:
         """The scene's picture as one complete shader."""
@@ -70,8 +75,28 @@ class Program:
         return self.compiled(tracer).glsl("picture", stage)
 
     def explanation(self, tracer: str = DEFAULT_TRACER) -> str:
-        """What the compiler proved of the scene and how it will be traced, with reasons."""
-        return self.compiled(tracer).explanation()
+        """What the compiler proved of the scene, how it will be traced, with reasons, and what it does not get.
+
+        Where the planner chooses, it measures the device (once) and, where predictions are close, tries candidates.
+        """
+        from sdfc.api import account
+        from sdfc.api.choose import decide, options_of
+        from sdfc.pipeline import Options
+
+        if checked_tracer(tracer) != AUTO:
+            compiled, options, reasons = self.compiled(tracer), Options(tracer=tracer), []
+        else:
+            decision = decide(self.scene, self._device_if_any(), pilot=True)
+            options = options_of(decision.chosen)
+            compiled, reasons = self._compiled_as(options), account.chosen(decision)
+        return "\n".join([compiled.explanation(), *reasons, *account.left_out(compiled, options)])
+
+    def _device_if_any(self) -> GlRenderer | None:
+        try:
+            renderer = self._renderer("gl", lambda _: None)
+        except DeviceError:
+            return None
+        return renderer if isinstance(renderer, GlRenderer) else None
 
     def render(
         self,
@@ -96,11 +121,20 @@ class Program:
         values = checked_params(self.params, params or {})
         (backend,) = checked_names("backend", (backend,), BACKENDS)
         renderer = self._renderer(backend, note)
-        shot = Shot(self.compiled(tracer, renderer.rays), camera or View(), values, size)
+        compiled = self._chosen(checked_tracer(tracer), renderer, size[0] * size[1] * samples)
+        shot = Shot(compiled, camera or View(), values, size)
         passes = samples + bool(wanted)
         colour = _accumulated(renderer, shot, [_part(progress, sample, passes) for sample in range(samples)])
         kept = _aovs(renderer, shot, wanted, _part(progress, samples, passes)) if wanted else {}
         return Image(colour, kept, tuple(shot.compiled.materials), renderer.name)
+
+    def _chosen(self, tracer: str, renderer: Renderer, rays: int) -> Compiled:
+        """The scene as it will be traced: as asked, or for much work as the planner finds it to be fastest."""
+        from sdfc.api.choose import WORTH_A_PILOT, decide, options_of
+
+        if tracer == AUTO and isinstance(renderer, GlRenderer) and rays >= WORTH_A_PILOT:
+            return self._compiled_as(options_of(decide(self.scene, renderer, pilot=True).chosen))
+        return self.compiled(tracer, renderer.rays)
 
     def _renderer(self, backend: str, note: Callable[[str], None]) -> Renderer:
         if backend not in self._renderers:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 Setting: TypeAlias = "float | tuple[float, ...] | str | Quantity"
 """A live value: numbers as the scene has them inside (radians, linear colours), or as they are typed (`30deg`)."""
 
+AUTO = "auto"  # the planner chooses the tracer
 LARGEST_SIDE = 16384
 MOST_PIXELS = 1 << 26  # a frame of float images takes 16 bytes a pixel, several times over
 MOST_SAMPLES = 65536
@@ -90,10 +91,12 @@ def checked_names(kind: str, names: Iterable[str], known: tuple[str, ...]) -> tu
 
 
 def checked_tracer(spec: str) -> str:
-    """A tracer's name, perhaps with values for its parameters (`relaxed:omega=1.4`), if there is one."""
+    """A tracer's name, perhaps with values for its parameters (`relaxed:omega=1.4`), if there is one; or AUTO."""
     from sdfc.tracers import TRACERS, choice
 
-    checked_names("tracer", (spec.partition(":")[0],), tuple(TRACERS))
+    checked_names("tracer", (spec.partition(":")[0],), (AUTO, *TRACERS))
+    if spec == AUTO:
+        return spec
     try:
         return choice(spec).spec
     except ValueError as error:

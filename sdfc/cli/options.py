@@ -44,7 +44,10 @@ def json_option(function: Function) -> Function:
 def tracer_option(function: Function) -> Function:
     """`--tracer`."""
     return click.option(
-        "--tracer", default="proven", show_default=True, help="How rays find surfaces (sdfc list tracers)."
+        "--tracer",
+        default="auto",
+        show_default=True,
+        help="How rays find surfaces (sdfc list tracers); auto: proven, or what is as right and found faster.",
     )(function)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -59,6 +60,12 @@ def assemble(graph: FieldGraph, plan: Plan, setting: Setting, entry: str, stage:
     return _Assembly(graph, plan, setting, entry).text(stage)
 
 
+def calibration_shaders() -> dict[str, str]:
+    """The small fragment shaders that a device's speed is measured with, by name."""
+    names = ("frame", "formula", "table")
+    return {name: _environment().get_template(f"calibrate/{name}.frag").render() for name in names}
+
+
 def vertex_shader() -> str:
     """The vertex stage of the radiance and probe shaders."""
     return _environment().get_template("entry/camera.vert").render(version=VERSION)
@@ -83,7 +90,11 @@ class _Assembly:
     def text(self, stage: str) -> str:
         suffix = {"fragment": "frag", "compute": "comp"}[stage]
         template = _environment().get_template(f"entry/{self._entry}.{suffix}")
-        text = template.render(self._context() | self._camera(stage))
+        context = self._context() | self._camera(stage)
+        text = template.render(context)
+        params = _read(self._params(), text)
+        if len(params) < len(self._setting.params):
+            text = template.render(context | {"params": params})
         return "\n".join(line.rstrip() for line in text.split("\n")).replace("\n\n\n", "\n\n")
 
     def _context(self) -> dict[str, object]:
@@ -193,6 +204,11 @@ class _Assembly:
             lines += scoped if len(scoped) == 1 else ["{", *(f"    {line}" for line in scoped), "}"]
             done[expr.id] = name
         return lines
+
+
+def _read(params: list[Variable], text: str) -> list[Variable]:
+    """The params that a shader reads: those named there besides their declaration and the line that sets them."""
+    return [p for p in params if len(re.findall(rf"\b{p.name}\b", text)) > 2]
 
 
 def uniform_name(param: Param) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import assert_never
 
+from sdfc.facts.bend import core_of
 from sdfc.field.derivative import directional, gradient
 from sdfc.field.function import Function
 from sdfc.field.graph import Expr, FieldGraph, Type
@@ -42,6 +43,7 @@ class Role(Enum):
     SURFACE = "_surface"  # vec4: gradient and value of a function with the surface as its zero set
     DISTANCE_SURFACE = "_distance_surface"  # vec4: gradient and value of the formula
     SPAN = "_span"  # vec4: bounds of the formula, and of its slope along d, over a piece of the ray
+    PARABOLA = "_parabola"  # vec3: the formula; its core, and the core's derivative along d
     LOOK = "_look"  # float: the index of the material of an operation with several
     JOINED = "_of"  # float: a blend of two values
     WEIGHTS = "_weights"  # vec3: a blend's derivatives by its two operands, and its value
@@ -161,6 +163,11 @@ class Functions:
                 ahead = graph.input(AHEAD, Type.FLOAT)
                 result = span(self._lowering.value(shape, p), p, d, ahead).vector
                 return Function(name, (point, ("d", Type.VEC3), (AHEAD, Type.FLOAT), *formal), result, doc)
+            case Role.PARABOLA:
+                value = self._lowering.value(shape, p)
+                core = core_of(shape, value)
+                result = graph.vector(value, core, directional(core, {p: d}))
+                return Function(name, (point, ("d", Type.VEC3), *formal), result, doc)
             case Role.WEIGHTS | Role.JOINED:
                 raise AssertionError("a blend's functions are of its operands' values, not of a point")
             case _:

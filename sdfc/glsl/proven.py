@@ -15,6 +15,7 @@ from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
+from sdfc.glsl.parabola import parabola_next
 from sdfc.plan.steps import (
     All,
     Any,
@@ -30,7 +31,7 @@ from sdfc.plan.steps import (
     is_closed,
     leaves_of,
 )
-from sdfc.plan.touch import Side, are_thick_together, is_grown
+from sdfc.plan.touch import Side, are_thick_together, convex_of, is_grown, thickest_skin
 
 # how much larger the solid is: a constant of the templates, and its sign
 _SIZES = {Side.WHOLE: ("GROW", 1.0), Side.CORE: ("CUT", -1.0), Side.CUT: ("CUT", 1.0)}
@@ -47,10 +48,10 @@ class TraceText:
 
 @dataclass(frozen=True, slots=True)
 class Intervals:
-    """The ray's intervals with closed-form parts: names by part and side, declared in `body` as they are asked for."""
+    """The ray's intervals with closed-form parts: names by part, side and skin, declared in `body` as they are asked for."""
 
     body: Body
-    names: dict[tuple[int, Side], str]
+    names: dict[tuple[int, Side, int], str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +59,8 @@ class Scope:
     """Where a step is written: the loop's body, the intervals and directions declared before it.
 
     Inside an intersection (`cut`) what is marched is sunk a little, by more than the film that coinciding faces leave,
-    and asked for all the digits that float32 has. In a `core`, so is what is solved in closed form (sdfc/plan/touch).
+    and asked for all the digits that float32 has. In a `core`, so is what is solved in closed form, by more where the
+    intersection's skins are thicker (sdfc/plan/touch).
     """
 
     body: Body
@@ -68,6 +70,7 @@ class Scope:
     cut: bool = False
     core: bool = False
     twice: bool = False
+    skin: Expr | None = None
 
 
 class ProvenWriter:
@@ -144,32 +147,39 @@ class ProvenWriter:
         self._function("float solids(vec3 o, vec3 d, float start)", body, "each cut solid from one event to the next")
 
     def _intervals(self, body: Body, step: Step) -> Intervals:
-        """Declares the ray's intervals with every closed-form leaf below `step`; cores only as they are asked for."""
+        """Declares the ray's intervals with every solid of closed form below `step`; others as they are asked for."""
         intervals = Intervals(body, {})
         for leaf in leaves_of(step):
             match leaf:
-                case Closed():
-                    self._named(leaf, intervals)
+                case Closed(inside=True):
+                    self._named(leaf, intervals, Side.WHOLE)
                 case _:
                     pass
         return intervals
 
-    def _named(self, leaf: Closed, intervals: Intervals, core: bool = False) -> str:
-        """The name of the ray's intervals with a leaf."""
-        side = Side.CUT if not leaf.inside else Side.CORE if core else Side.WHOLE
-        part, body = leaf.part, intervals.body
-        if (id(part), side) not in intervals.names:
-            name = part.name + side.value
-            type_ = Type.VEC2 if leaf.intervals == 1 else Type.VEC4
-            body.declare(type_, name, self._interval_text(body, part, side), part.span)
-            intervals.names[id(part), side] = name
-        return intervals.names[id(part), side]
+    def _asked(self, leaf: Closed, scope: Scope) -> str:
+        """The name of the ray's intervals with a leaf that a place in the tree is about."""
+        if leaf.inside:
+            return self._named(leaf, scope.intervals, Side.CORE if scope.core else Side.WHOLE, scope.skin)
+        return self._named(leaf, scope.intervals, Side.CUT, scope.skin)
 
-    def _interval_text(self, body: Body, part: Part, side: Side = Side.WHOLE) -> str:
+    def _named(self, leaf: Closed, intervals: Intervals, side: Side, skin: Expr | None = None) -> str:
+        part, body, names = leaf.part, intervals.body, intervals.names
+        key = id(part), side, -1 if skin is None or side is Side.WHOLE else skin.id
+        if key not in names:
+            like = sum((id(part), side) == other[:2] for other in names)
+            name = f"{part.name}{side.value}{f'_{like + 1}' if like else ''}"
+            text = self._interval_text(body, part, side, skin)
+            body.declare(Type.VEC2 if leaf.intervals == 1 else Type.VEC4, name, text, part.span)
+            names[key] = name
+        return names[key]
+
+    def _interval_text(self, body: Body, part: Part, side: Side = Side.WHOLE, skin: Expr | None = None) -> str:
         q = body.point(own_point(part.inverse, self._o), f"o_{part.name}")
         dq = body.point(own_direction(part.inverse, self._d), f"d_{part.name}")
         size, sign = _SIZES[side]
-        grow = body.text(sign * part.own_grow * self._graph.input(size, Type.FLOAT))
+        own = part.own_grow if skin is None or side is Side.WHOLE else part.own_grow * skin
+        grow = body.text(sign * own * self._graph.input(size, Type.FLOAT))
         return body.call(self._functions.of_part(part, Role.RAY), [q, dq, grow])
 
     # marching: what has no closed form
@@ -226,6 +236,8 @@ class ProvenWriter:
             match leaf:
                 case Tangent(part=part) | Chord(part=part):
                     parts = [part]
+                case Ball(part=part) if leaf.bend is not None:
+                    parts = [part]
                 case Blend():
                     parts = self._blends.convex_parts_of(leaf)
                 case _:
@@ -247,7 +259,7 @@ class ProvenWriter:
         """Where marching may begin: what boxes and closed-form parts prove before any value is known."""
         match step:
             case Closed(inside=True):
-                return f"enter({self._named(step, intervals)}, start)"
+                return f"enter({self._named(step, intervals, Side.WHOLE)}, start)"
             case Within():
                 return f"enter({step.name}, start)"
             case Any() if step.steps:
@@ -265,7 +277,7 @@ class ProvenWriter:
     def _next(self, step: Step, scope: Scope) -> str:
         match step:
             case Closed():
-                return f"{'enter' if step.inside else 'leave'}({self._named(step, scope.intervals, scope.core)}, t)"
+                return f"{'enter' if step.inside else 'leave'}({self._asked(step, scope)}, t)"
             case Many():
                 raise AssertionError("many parts are members of the scene's union, which is solved by events")
             case Tangent() | Chord() | Ball() | Blend():
@@ -275,7 +287,7 @@ class ProvenWriter:
             case Any():
                 return self._joined("min", "near", [self._next(s, scope) for s in step.steps], scope)
             case All():
-                return self._all(step, replace(scope, cut=True))
+                return self._all(step, replace(scope, cut=True, skin=thickest_skin(step)))
             case _:
                 assert_never(step)
 
@@ -319,7 +331,7 @@ class ProvenWriter:
     # intersections: the parts that are grown, and the rest
 
     def _all(self, step: All, scope: Scope) -> str:
-        convex = [s for s in step.steps if isinstance(s, Closed) and s.inside and s.intervals == 1]
+        convex = convex_of(step.steps)
         others = [s for s in step.steps if s not in convex]
         grown = [partial(self._convex, convex)] if convex else []
         grown += [partial(self._next, s) for s in others if is_grown(s)]
@@ -343,10 +355,10 @@ class ProvenWriter:
 
     def _convex(self, steps: list[Closed], scope: Scope) -> str:
         """The convex closed-form parts of an intersection: they meet in one interval first."""
-        names = [self._named(s, scope.intervals, scope.core) for s in steps]
-        if scope.core or len(steps) == 1 or are_thick_together([s.part for s in steps], self._graph):
+        names = [self._asked(s, scope) for s in steps]
+        if scope.core or len(steps) == 1 or are_thick_together([s.part for s in steps]):
             return f"enter({_chain('both', names)}, t)"
-        cores = [self._named(s, scope.intervals, core=True) for s in steps]
+        cores = [self._asked(s, replace(scope, core=True)) for s in steps]
         pairs = [f"vec4({name}, {core})" for name, core in zip(names, cores, strict=True)]
         return f"enter({_chain('meeting', pairs)}.xy, t)"
 
@@ -364,6 +376,9 @@ class ProvenWriter:
 
     def _ball(self, step: Ball, scope: Scope) -> str:
         part, body = step.part, scope.body
+        if step.bend is not None:
+            direction = scope.directions[id(part)]
+            return parabola_next(self._graph, self._functions, body, step, direction, scope.cut)
         q = body.point(own_point(part.inverse, self._p), f"q_{part.name}")
         value = body.call(self._functions.of_part(part, Role.VALUE), [q])
         scale = part.stretch * (1.0 / max(step.lipschitz, 1e-9))

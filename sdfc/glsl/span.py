@@ -17,6 +17,7 @@ from sdfc.glsl.names import identifier
 from sdfc.plan.steps import All, Any, Ball, Blend, Chord, Closed, Many, Part, Step, Tangent, Within
 
 _LENGTH = identifier(AHEAD)
+_BOX_SPAN = "box_distance_span"
 _STILL = "vec4(FAR, FAR, 0.0, 0.0)"
 
 
@@ -44,7 +45,8 @@ class SpanWriter:
         body.add(f"vec4 whole = {result};")
         body.add("return vec4(whole.xy, clamp(whole.zw, -1.0, 1.0));")
         head = f"vec4 map_span(vec3 p, vec3 d, float {_LENGTH}) {{"
-        return "\n".join([print_function(_box_span(self._graph)), head, *body.lines, "}", ""])
+        text = "\n".join([head, *body.lines, "}", ""])
+        return f"{print_function(_box_span(self._graph), _BOX_SPAN)}\n{text}" if _BOX_SPAN in text else text
 
     def _fold(self, step: Step, body: Body) -> str:
         match step:
@@ -98,7 +100,7 @@ class SpanWriter:
         centre = ", ".join(literal(c) for c in step.box.centre)
         half = ", ".join(literal(h) for h in step.box.half)
         margin = literal(1e-3 * step.box.radius)
-        box = f"box_distance_span(p - vec3({centre}), d, {_LENGTH}, vec3({half}))"
+        box = f"{_BOX_SPAN}(p - vec3({centre}), d, {_LENGTH}, vec3({half}))"
         return f"span_within({box}, {inner}, {margin})"
 
     def _fresh(self) -> str:
@@ -114,4 +116,4 @@ def _box_span(graph: FieldGraph) -> Function:
     inside = graph.min(graph.max(q[0], graph.max(q[1], q[2])), 0.0)
     result = span(graph.length(graph.max(q, 0.0)) + inside, p, d, length).vector
     formal = (("p", Type.VEC3), ("d", Type.VEC3), (_LENGTH, Type.FLOAT), ("half_size", Type.VEC3))
-    return Function("box_distance_span", formal, result)
+    return Function(_BOX_SPAN, formal, result)

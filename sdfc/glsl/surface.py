@@ -1,8 +1,8 @@
 """What is at a hit: one pass over the tree that keeps the gradient and the material of the part whose surface it is.
 
-Where faces meet within rounding, their values at the hit tell nothing. Values a little way back along the ray do, to
-first order: from there the ray comes to the face that it enters by. A face that it runs along, or one that is buried
-where two parts touch, is not that face.
+Where faces meet within rounding, their values at the hit do not tell which one the ray enters by. So the tree is asked
+a little way back along the ray: from there the face that it enters by is ahead. One that it runs along is not, nor one
+that is buried where two parts touch, whose other part is as near.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ from sdfc.plan.steps import (
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
 
-_BACK = "8.0"  # so far back, in roundings: farther than the sinks below, where the face is not seen at a grazing angle
-_SUNK = "3.0"  # as what is marched is in an intersection (sdfc/glsl/proven)
+_BACK = "4.0"  # so far back, in roundings
+_SUNK = "3.0"  # what is marched is sunk so far in an intersection (sdfc/glsl/proven)
 
 PROPERTIES = ("color", "metallic", "roughness", "emission", "transmission", "ior", "tint")
 
@@ -84,22 +84,27 @@ class SurfaceWriter:
     def write(self, root: Step) -> SurfaceText:
         body = Body(self._live)
         result = self._fold(root, body)
-        body.add(f"return {result};")
-        head = ["Surface surface(vec3 p, vec3 d, float fine) {", f"    vec4 back = vec4(-{_BACK} * fine * d, 0.0);"]
+        body.add(f"Surface s = {result};")
+        body.add("s.field.w -= dot(s.field.xyz, back);")
+        body.add("return s;")
+        head = [
+            "Surface surface(vec3 p, vec3 d, float fine) {",
+            f"    vec3 back = -{_BACK} * fine * d;",
+            "    p += back;",
+        ]
         if any("sunk)" in line for line in body.lines):
-            head.append(f"    vec4 sunk = vec4(back.xyz, {_SUNK} * fine);  // what is marched, in an intersection")
+            head.append(f"    float sunk = {_SUNK} * fine;  // what is marched, in an intersection")
         function = "\n".join([*head, *body.lines, "}", ""])
         return SurfaceText(self._structure(), function, self._properties())
 
     # declarations
 
     def _structure(self) -> str:
-        members = ["vec4 field;  // gradient and value", "float rank;  // the value a little way back along the ray"]
+        members = ["vec4 field;  // gradient and value", "float rank;  // the value of what is traced"]
         members += ["float material;"]
         members += [f"{type_name(_property(self._materials[0], p).type)} {p};" for p in self._varying]
         lines = ["struct Surface {", *(f"    {m}" for m in members), "};", ""]
         lines += [
-            "float rank(vec4 field, vec4 back) { return field.w + dot(field.xyz, back.xyz) + back.w; }",
             "Surface nearer(Surface a, Surface b) { if (b.rank < a.rank) return b; return a; }",
             "Surface farther(Surface a, Surface b) { if (b.rank > a.rank) return b; return a; }",
             "",
@@ -112,9 +117,9 @@ class SurfaceWriter:
     def _constructor(self, index: int, material: Material) -> list[str]:
         body = Body(self._live)
         values = body.texts([_property(material, p) for p in self._varying])
-        arguments = ", ".join(["field", "rank(field, back)", f"{index}.0", *values])
+        arguments = ", ".join(["field", "field.w + sunk", f"{index}.0", *values])
         return [
-            f"Surface {self._names[id(material)]}(vec4 field, vec4 back) {{",
+            f"Surface {self._names[id(material)]}(vec4 field, float sunk) {{",
             *body.lines,
             f"    return Surface({arguments});",
             "}",
@@ -123,16 +128,16 @@ class SurfaceWriter:
 
     def _choice(self) -> list[str]:
         names = [self._names[id(m)] for m in self._materials]
-        chosen = [f"    if (material == {i}.0) s = {name}(field, back);" for i, name in enumerate(names) if i]
-        head = "Surface painted(vec4 field, float material, vec4 back) {"
-        return [head, f"    Surface s = {names[0]}(field, back);", *chosen, "    return s;", "}", ""]
+        chosen = [f"    if (material == {i}.0) s = {name}(field, sunk);" for i, name in enumerate(names) if i]
+        head = "Surface painted(vec4 field, float material, float sunk) {"
+        return [head, f"    Surface s = {names[0]}(field, sunk);", *chosen, "    return s;", "}", ""]
 
     def _mixing(self) -> list[str]:
-        mixed = ["field", "rank(field, back)", "w.y > w.x ? b.material : a.material"]
+        mixed = ["field", "field.w + sunk", "w.y > w.x ? b.material : a.material"]
         mixed += [f"mix(a.{p}, b.{p}, share)" for p in self._varying]
         return [
             "// a blend: w holds the derivatives by a and b, and the value",
-            "Surface blended(Surface a, Surface b, vec3 w, vec4 back) {",
+            "Surface blended(Surface a, Surface b, vec3 w, float sunk) {",
             "    float share = w.y / max(w.x + w.y, 1e-6);",
             "    vec4 field = vec4(w.x * a.field.xyz + w.y * b.field.xyz, w.z);",
             f"    return Surface({', '.join(mixed)});",
@@ -151,52 +156,52 @@ class SurfaceWriter:
 
     # the tree
 
-    def _fold(self, step: Step, body: Body, back: str = "back") -> str:
+    def _fold(self, step: Step, body: Body, sunk: str = "0.0") -> str:
         match step:
             case Closed():
-                return self._leaf(step.part, body, step.inside, Role.SURFACE, "back")
+                return self._leaf(step.part, body, step.inside, Role.SURFACE, "0.0")
             case Ball():
                 # over its constant: then the gradient says how much of a distance the value is
                 scale = 1.0 / max(step.lipschitz, 1e-9)
-                return self._leaf(step.part, body, step.inside, Role.SURFACE, back, scale)
+                return self._leaf(step.part, body, step.inside, Role.SURFACE, sunk, scale)
             case Tangent():
-                return self._leaf(step.part, body, True, Role.SURFACE, back)
+                return self._leaf(step.part, body, True, Role.SURFACE, sunk)
             case Chord():
-                return self._leaf(step.part, body, False, Role.SURFACE, back)
+                return self._leaf(step.part, body, False, Role.SURFACE, sunk)
             case Many():
                 return self._nearest(step, body)
             case Blend():
-                return self._blend(step.tree, body, back)
+                return self._blend(step.tree, body, sunk)
             case Within():
-                return self._fold(step.step, body, back)
+                return self._fold(step.step, body, sunk)
             case Any():
-                return self._joined("nearer", step.steps, body, back)
+                return self._joined("nearer", step.steps, body, sunk)
             case All():
                 return self._joined("farther", step.steps, body, "sunk")
             case _:
                 assert_never(step)
 
-    def _joined(self, operation: str, steps: tuple[Step, ...], body: Body, back: str) -> str:
+    def _joined(self, operation: str, steps: tuple[Step, ...], body: Body, sunk: str) -> str:
         name = self._name()
         if not steps:
-            body.add(f"Surface {name} = {self._names[id(self._materials[0])]}(vec4(0.0, 1.0, 0.0, FAR), back);")
+            body.add(f"Surface {name} = {self._names[id(self._materials[0])]}(vec4(0.0, 1.0, 0.0, FAR), 0.0);")
             return name
-        body.add(f"Surface {name} = {self._fold(steps[0], body, back)};")
+        body.add(f"Surface {name} = {self._fold(steps[0], body, sunk)};")
         for step in steps[1:]:
-            text = self._fold(step, body, back)
+            text = self._fold(step, body, sunk)
             body.add(f"{name} = {operation}({name}, {text});")
         return name
 
     def _nearest(self, step: Many, body: Body) -> str:
         if self._many is None:
-            return self._joined("nearer", step.members, body, "back")
+            return self._joined("nearer", step.members, body, "0.0")
         field = self._many.surface(step, body)
         if len(self._materials) == 1:
-            return f"{self._names[id(self._materials[0])]}({field}, back)"
+            return f"{self._names[id(self._materials[0])]}({field}, 0.0)"
         self._painted = True
-        return f"painted({field}, {self._many.record(step).material}, back)"
+        return f"painted({field}, {self._many.record(step).material}, 0.0)"
 
-    def _leaf(self, part: Part, body: Body, inside: bool, role: Role, back: str, scale: float = 1.0) -> str:
+    def _leaf(self, part: Part, body: Body, inside: bool, role: Role, sunk: str, scale: float = 1.0) -> str:
         stretch = part.stretch * scale
         q = body.point(own_point(part.inverse, self._p), f"q_{part.name}")
         field = body.call(self._functions.of_part(part, role), [q])
@@ -211,8 +216,8 @@ class SurfaceWriter:
         if len(part.looks) > 1:
             self._painted = True
             look = body.call(self._functions.of_part(part, Role.LOOK), [q])
-            return f"painted({'' if inside else '-'}{field}, {look}, {back})"
-        return f"{self._names[id(part.material)]}({'' if inside else '-'}{field}, {back})"
+            return f"painted({'' if inside else '-'}{field}, {look}, {sunk})"
+        return f"{self._names[id(part.material)]}({'' if inside else '-'}{field}, {sunk})"
 
     def _turned(self, part: Part, name: str, stretch: Expr) -> Expr:
         """The gradient in the scene's space: A^T g for the map p -> A p + b to the part's own space."""
@@ -225,30 +230,30 @@ class SurfaceWriter:
         g = transposed.direction(own.swizzle("xyz"))
         return self._graph.vector(g[0], g[1], g[2], own[3]) * stretch
 
-    def _blend(self, tree: BlendTree, body: Body, back: str) -> str:
+    def _blend(self, tree: BlendTree, body: Body, sunk: str) -> str:
         match tree:
             case Tangent():
-                return self._leaf(tree.part, body, True, Role.DISTANCE_SURFACE, back)
+                return self._leaf(tree.part, body, True, Role.DISTANCE_SURFACE, sunk)
             case Falling():
-                return self._leaf(tree.part, body, tree.inside, Role.DISTANCE_SURFACE, back)
+                return self._leaf(tree.part, body, tree.inside, Role.DISTANCE_SURFACE, sunk)
             case BlendUnion():
-                texts = [self._blend(t, body, back) for t in tree.operands]
+                texts = [self._blend(t, body, sunk) for t in tree.operands]
                 result = texts[0]
                 for text in texts[1:]:
                     result = f"nearer({result}, {text})"
                 return result
             case BlendNode():
-                return self._blend_node(tree, body, back)
+                return self._blend_node(tree, body, sunk)
             case _:
                 assert_never(tree)
 
-    def _blend_node(self, tree: BlendNode, body: Body, back: str) -> str:
+    def _blend_node(self, tree: BlendNode, body: Body, sunk: str) -> str:
         self._blends = True
         first, second, name = self._name(), self._name(), self._name()
-        body.add(f"Surface {first} = {self._blend(tree.first, body, back)};")
-        body.add(f"Surface {second} = {self._blend(tree.second, body, back)};")
+        body.add(f"Surface {first} = {self._blend(tree.first, body, sunk)};")
+        body.add(f"Surface {second} = {self._blend(tree.second, body, sunk)};")
         weights = body.call(self._functions.weights(tree.shape), [f"{first}.field.w", f"{second}.field.w"])
-        body.add(f"Surface {name} = blended({first}, {second}, {weights}, {back});", tree.shape.span)
+        body.add(f"Surface {name} = blended({first}, {second}, {weights}, {sunk});", tree.shape.span)
         return name
 
     def _name(self) -> str:

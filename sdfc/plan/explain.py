@@ -59,7 +59,9 @@ def _tree(step: Step, depth: int) -> list[str]:
         case Tangent():
             return [f"{pad}{step.part.name} ({step.part.span}): tangents, its function is convex{_left_out(step.part)}"]
         case Chord():
-            return [f"{pad}complement of {step.part.name} ({step.part.span}): chords, its function is convex{_left_out(step.part)}"]
+            return [
+                f"{pad}complement of {step.part.name} ({step.part.span}): chords, its function is convex{_left_out(step.part)}"
+            ]
         case Ball():
             side = "" if step.inside else "complement of "
             reason = f"Lipschitz balls, constant {step.lipschitz:.4g}: curvature unknown{_left_out(step.part)}"

@@ -55,10 +55,13 @@ class Plan:
 
     @property
     def events(self) -> int:
-        """How many ends of closed-form intervals there are outside tables: no loop of events runs longer than that."""
+        """How many ends of closed-form intervals there are outside tables: no loop of events runs longer than that.
+
+        Solids have two of each interval: their own, and their core's (sdfc/plan/touch).
+        """
         steps = self.root.steps if isinstance(self.root, Any) else (self.root,)
         single = [leaf for step in steps if not isinstance(step, Many) for leaf in leaves_of(step)]
-        return sum(2 * leaf.intervals for leaf in single if isinstance(leaf, Closed))
+        return sum(2 * leaf.intervals * (1 + leaf.inside) for leaf in single if isinstance(leaf, Closed))
 
     @property
     def rows_at_once(self) -> int:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias, assert_never
 
 from sdfc.diagnostics import SceneError, scene_error
+from sdfc.facts.bend import Bends
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box, everything
 from sdfc.facts.curvature import convex_shapes
@@ -84,16 +85,27 @@ def unwrapped(shape: Shape) -> Leaf | None:
 
 
 class Prover:
-    """Builds the step tree of one scene. `rays`: which closed forms it uses, those that are dear among them or not."""
+    """Builds the step tree of one scene.
+
+    `rays`: which closed forms it uses, those that are dear among them or not. Without `bends` nothing is stepped by
+    parabolas.
+    """
 
     def __init__(
-        self, values: FieldGraph, bounds: Bounds, lipschitz: Lipschitz, unpainted: Material, rays: Rays
+        self,
+        values: FieldGraph,
+        bounds: Bounds,
+        lipschitz: Lipschitz,
+        unpainted: Material,
+        rays: Rays,
+        bends: Bends | None = None,
     ) -> None:
         self._values = values
         self._bounds = bounds
         self._lipschitz = lipschitz
         self._unpainted = unpainted
         self._rays = rays
+        self._bends = bends
         self._names: Counter[str] = Counter()
         self._parts: dict[tuple[int, int], Part] = {}
         self._convex: frozenset[int] = frozenset()
@@ -157,16 +169,22 @@ class Prover:
             return Any(()) if leaf.inside else self._ball(part, leaf, own)
         if where.is_finite:  # a little wider than the solid: its boundary belongs to it
             where = where.widened(1e-5 * max(where.radius, 1e-3))
-        step: Step = self._ball(part, leaf, where)
+        step: Step
         if tree is not None:
             step = Blend(part, tree, self._lipschitz.constant(leaf.placed, where))
+        else:
+            step = self._ball(part, leaf, where)
         needed = not self._lipschitz.is_global(leaf.placed)
         if needed and not where.is_finite:
             return step  # found over everything: it holds everywhere
         return self._within(where, step, needed) if where.is_finite and (leaf.inside or needed) else step
 
     def _ball(self, part: Part, leaf: Leaf, where: Box) -> Ball:
-        return Ball(part, self._lipschitz.constant(leaf.placed, where), leaf.inside)
+        lipschitz = self._lipschitz.constant(leaf.placed, where)
+        if self._bends is None or not leaf.inside or not where.is_finite:
+            return Ball(part, lipschitz, leaf.inside)
+        own = where if leaf.affine is None else self._bounds.moved(leaf.affine.inverse, where)
+        return Ball(part, lipschitz, leaf.inside, self._bends.bound(leaf.shape, own))
 
     def _within(self, box: Box, step: Step, needed: bool) -> Within:
         self._boxes += 1

@@ -74,11 +74,16 @@ class Chord:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ball:
-    """A field known to be Lipschitz: the empty ball around the point."""
+    """A field known to be Lipschitz: the empty ball around the point.
+
+    With `bend`, also the parabola below it: along a line of unit speed in the part's own space its core (facts/bend.py)
+    falls no faster than f + f' x - bend x x / 2.
+    """
 
     part: Part
     lipschitz: float
     inside: bool = True
+    bend: Expr | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,7 +13,8 @@ keeps a point a such that distance > 0 is proved on [start, a], and moves it by
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import TypeAlias
 
@@ -21,14 +22,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdfc.field.graph import Expr
-from sdfc.field.interval import IntervalEvaluator, Parameters
+from sdfc.field.interval import Parameters
+from sdfc.reference.parts import NOBODY, Parts
+from sdfc.reference.search import Rays
 
 Array: TypeAlias = NDArray[np.float64]
 Mask: TypeAlias = NDArray[np.bool_]
+Index: TypeAlias = NDArray[np.intp]
 
 RESOLUTION = 1e-11  # of the ray's largest coordinate: the width of a bracket
-SMALLEST_SCALE = 1e-6  # coordinates below it do not ask for a narrower bracket
-MAX_STEPS = 4000  # per ray and search; what is left then is AMBIGUOUS, never guessed
 MAX_FILMS = 32  # runs thinner than `thin` that a ray may pass
 
 
@@ -64,67 +66,6 @@ class Certificate:
     contested: Mask
 
 
-@dataclass(frozen=True, slots=True)
-class _Rays:
-    """Rays with everything that a search needs; `at(index)` are some of them."""
-
-    evaluator: IntervalEvaluator
-    params: Parameters
-    o: Array
-    d: Array
-    resolution: float  # of the largest coordinate
-    scale: Array  # (n,) the origin's largest coordinate
-    rate: float | None  # a proved Lipschitz constant of the distance, or None
-    speed: Array  # |d|, rounded up
-
-    def some(self, index: NDArray[np.intp] | Mask) -> _Rays:
-        return _Rays(
-            self.evaluator,
-            self.params,
-            self.o[:, index],
-            self.d[:, index],
-            self.resolution,
-            self.scale[index],
-            self.rate,
-            self.speed[index],
-        )
-
-    def width(self, t: Array) -> Array:
-        """The width of a bracket near t, in t."""
-        return self.resolution * np.maximum(np.maximum(self.scale, np.abs(t) * self.speed), SMALLEST_SCALE) / self.speed
-
-
-@dataclass(frozen=True, slots=True)
-class _Level:
-    """The function whose first root is sought: sign * distance - level. Positive: empty."""
-
-    sign: float
-    level: float
-
-    def bounds(self, lo: Array, hi: Array) -> tuple[Array, Array]:
-        """The function's bounds from the distance's; exact sign, one rounding of the difference outward."""
-        low, high = (lo, hi) if self.sign > 0.0 else (-hi, -lo)
-        if self.level == 0.0:
-            return low, high
-        return np.nextafter(low - self.level, -np.inf), np.nextafter(high - self.level, np.inf)
-
-    def slopes(self, lo: Array, hi: Array) -> tuple[Array, Array]:
-        return (lo, hi) if self.sign > 0.0 else (-hi, -lo)
-
-
-@dataclass(slots=True)
-class _Advance:
-    """How far a search got: `reached` (n,), `finished` where it is the end, and the least lower bound met."""
-
-    reached: Array
-    finished: Mask
-    clearance: Array
-    exhausted: Mask = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.exhausted = np.zeros(self.reached.shape, bool)
-
-
 @np.errstate(all="ignore")
 def first_roots(
     distance: Expr,
@@ -138,6 +79,7 @@ def first_roots(
     thin: float = 0.0,
     tolerance: float = 0.0,
     lipschitz: float | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Certificate:
     """The certified first entry of each ray into {distance <= 0} within [t_start, t_end].
 
@@ -154,23 +96,27 @@ def first_roots(
       distance <= tolerance it stays below 2 tolerance up to the entry, then below tolerance down to -tolerance;
     and no film was passed. With tolerance = 0 only AMBIGUOUS rays and rays that passed a film are contested.
     """
-    rays = _rays(distance, o, d, t_start, t_end, params or {}, resolution, lipschitz)
+    rays = Rays.of(o, d, params or {}, resolution, lipschitz)
+    parts = Parts(distance, rays)
     count = o.shape[1]
     start, end = (np.broadcast_to(np.asarray(t, float), (count,)).copy() for t in (t_start, t_end))
-    early, clearance = start.copy(), np.full(count, np.inf)
-    near = np.ones(count, bool)
-    if tolerance > 0.0:
-        outer = _advance(rays, _Level(1.0, tolerance), start, end)
-        near, early = ~outer.finished, np.where(outer.finished, np.inf, outer.reached)
-        clearance = outer.clearance + tolerance
+    tell = progress or _silent
+    outer = parts.survey(tolerance, start, end, lambda share: tell(0.8 * share))
+    near = ~outer.advance.finished
+    early = np.where(near, outer.advance.reached, np.inf)
     index = np.flatnonzero(near)
-    entry = _entries(rays.some(index), early[index], end[index], thin)
-    result = _assembled(count, index, entry, early if tolerance > 0.0 else np.full(count, np.inf), clearance)
+    entry = _entries(parts, rays, index, early[index], end[index], thin, outer.owner[index])
+    tell(0.9)
+    result = _assembled(count, index, entry, early, outer.advance.clearance + tolerance)
     if tolerance > 0.0:
-        _classify(rays, result, end, tolerance)
+        _classify(parts, result, index, entry.owner, end, tolerance)
     else:
         result.t_early[:], result.t_late[:] = result.t_lo, result.t_hi
     return result
+
+
+def _silent(share: float) -> None:
+    """Nobody asked."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,130 +126,48 @@ class _Entries:
     t_hi: Array
     clearance: Array
     film: Mask
+    owner: Index  # the part that is entered
 
 
-def _rays(
-    distance: Expr,
-    o: Array,
-    d: Array,
-    t_start: float | Array,
-    t_end: float | Array,
-    params: Parameters,
-    resolution: float,
-    lipschitz: float | None,
-) -> _Rays:
-    scale = np.max(np.abs(o), axis=0, initial=0.0)
-    speed = np.sqrt(np.sum(d * d, axis=0)) * (1.0 + 1e-15)
-    return _Rays(IntervalEvaluator(distance), params, o, d, resolution, scale, lipschitz, speed)
-
-
-def _advance(rays: _Rays, level: _Level, start: Array, end: Array) -> _Advance:
-    """Moves from `start` towards `end` while emptiness is proved; stops where it cannot be at the rays' resolution."""
-    count = start.shape[0]
-    state = _Advance(start.copy(), start >= end, np.full(count, np.inf))
-    span = np.where(np.isfinite(end), end - start, np.maximum(1.0, np.abs(start)) * 64.0)
-    width = np.minimum(span, np.maximum(span / 8.0, rays.width(start)))
-    value, _ = level.bounds(*rays.evaluator.at(rays.o, rays.d, start, rays.params))
-    active = np.flatnonzero(~state.finished)
-    for _ in range(MAX_STEPS):
-        if active.size == 0:
-            break
-        active = _advance_once(rays, level, state, active, end, width, value)
-    state.exhausted[active] = True
-    return state
-
-
-def _advance_once(
-    rays: _Rays, level: _Level, state: _Advance, active: NDArray[np.intp], end: Array, width: Array, value: Array
-) -> NDArray[np.intp]:
-    """One step of the active rays; returns those that go on. `value`: a lower bound of the function at `reached`."""
-    some = rays.some(active)
-    a, w, v = state.reached[active], width[active], np.maximum(value[active], 0.0)
-    b = np.minimum(a + w, end[active])
-    resolution = some.width(a)
-    slab = some.evaluator.along_ray(some.o, some.d, a, b, some.params)
-    lo, _ = level.bounds(slab.lo, slab.hi)
-    fall, rise = level.slopes(slab.slope_lo, slab.slope_hi)
-    lo = _past_jumps(some, level, a, b, lo, fall)
-    proved = np.where(fall >= 0.0, np.where(v > 0.0, np.inf, 0.0), v / -fall)
-    if rays.rate is not None:
-        proved = np.maximum(proved, v / (rays.rate * some.speed))
-    proved *= 1.0 - 1e-15  # for the roundings of the quotients; nextafter is for the sum's
-    proved_end = np.where(np.isinf(proved), np.inf, np.nextafter(a + proved, a))
-    empty = (lo > 0.0) | (proved_end >= b)
-    reached = np.where(empty, b, np.minimum(proved_end, b))
-    # where it falls all along, the root (if any) is before a + value / -rise
-    newton = np.where(rise < 0.0, 2.0 * (v / -rise - proved), np.inf)
-    shorter = np.minimum(np.maximum(2.0 * proved, w / 8.0), np.maximum(newton, resolution / 2.0))
-    bound = np.maximum(lo, np.where(empty, v + np.minimum(fall, 0.0) * (b - a), -np.inf))
-    state.clearance[active] = np.minimum(
-        state.clearance[active], np.where(np.isnan(bound), 0.0, np.maximum(bound, 0.0))
-    )
-    state.reached[active] = reached
-    width[active] = np.where(empty, 2.0 * w, np.minimum(shorter, w / 2.0))
-    finished = empty & (b >= end[active])
-    state.finished[active[finished]] = True
-    stuck = ~empty & (b - a <= resolution)
-    go = ~finished & ~stuck
-    moved = go & (reached > a)
-    step = some.some(moved)
-    value[active[moved]], _ = level.bounds(*step.evaluator.at(step.o, step.d, reached[moved], step.params))
-    return active[go]
-
-
-def _past_jumps(rays: _Rays, level: _Level, a: Array, b: Array, lo: Array, fall: Array) -> Array:
-    """A better lower bound over [a, b] where the distance may jump there: that of both sides of the jump."""
-    jumping = np.flatnonzero((lo <= 0.0) & np.isneginf(fall))
-    if jumping.size == 0:
-        return lo
-    some = rays.some(jumping)
-    sides, _ = level.bounds(*some.evaluator.across_jumps(some.o, some.d, a[jumping], b[jumping], some.params))
-    result = lo.copy()
-    result[jumping] = np.maximum(lo[jumping], sides)
-    return result
-
-
-def _entries(rays: _Rays, start: Array, end: Array, thin: float) -> _Entries:
-    """The first run of each ray that counts: see `first_roots`."""
-    count = start.shape[0]
-    plain = _Level(1.0, 0.0)
+def _entries(parts: Parts, rays: Rays, index: Index, start: Array, end: Array, thin: float, hint: Index) -> _Entries:
+    """The first run of each ray `index` that counts: see `first_roots`."""
+    count = index.size
     status = np.full(count, Status.AMBIGUOUS, np.int8)
     t_lo, t_hi = start.copy(), np.full(count, np.inf)
-    clearance, film = np.full(count, np.inf), np.zeros(count, bool)
+    clearance, film, owner = np.full(count, np.inf), np.zeros(count, bool), hint.copy()
     active = np.arange(count)
     for _ in range(MAX_FILMS):
         if active.size == 0:
             break
-        some = rays.some(active)
-        got = _advance(some, plain, t_lo[active], end[active])
-        t_lo[active] = got.reached
+        found = parts.first(0.0, t_lo[active], end[active], index[active], owner[active])
+        got = found.advance
+        t_lo[active], owner[active] = got.reached, found.owner
         clearance[active] = np.minimum(clearance[active], got.clearance)
         status[active[got.finished]] = Status.MISS
         stopped = active[~got.finished & ~got.exhausted]
-        solid, empty, after = _beyond(rays.some(stopped), t_lo[stopped], thin)
+        solid, empty, after = _beyond(parts, rays, index[stopped], t_lo[stopped], thin, owner[stopped])
         hits = stopped[solid]
         status[hits] = Status.HIT
-        t_hi[hits] = _first_inside(rays.some(hits), t_lo[hits], after[solid])
+        t_hi[hits] = _first_inside(parts, rays, index[hits], t_lo[hits], after[solid], owner[hits])
         passed = stopped[empty]
         film[passed], clearance[passed] = True, 0.0
         t_lo[passed] = after[empty]
         status[passed[t_lo[passed] >= end[passed]]] = Status.MISS
         active = passed[t_lo[passed] < end[passed]]
     t_lo[status == Status.MISS] = np.inf
-    return _Entries(status, t_lo, t_hi, clearance, film)
+    return _Entries(status, t_lo, t_hi, clearance, film, owner)
 
 
-def _beyond(rays: _Rays, t: Array, thin: float) -> tuple[Mask, Mask, Array]:
+def _beyond(parts: Parts, rays: Rays, index: Index, t: Array, thin: float, owner: Index) -> tuple[Mask, Mask, Array]:
     """Whether the distance is proved negative, or positive, `thin` behind t (without `thin`: at the first of a few
     points behind it, closer than 256 resolutions, where its sign is proved); and the point."""
-    after = t + (np.full(t.shape, thin) if thin > 0.0 else rays.width(t))
+    after = t + (np.full(t.shape, thin) if thin > 0.0 else rays.some(index).width(t))
     solid, empty = np.zeros(t.shape, bool), np.zeros(t.shape, bool)
     for _ in range(1 if thin > 0.0 else 9):
         unknown = np.flatnonzero(~(solid | empty))
         if unknown.size == 0:
             break
-        some = rays.some(unknown)
-        lo, hi = rays.evaluator.at(some.o, some.d, after[unknown], rays.params)
+        lo, hi = parts.at(after[unknown], index[unknown], owner[unknown])
         solid[unknown], empty[unknown] = hi < 0.0, lo > 0.0
         left = unknown[(hi >= 0.0) & (lo <= 0.0)]
         if thin == 0.0:
@@ -312,40 +176,42 @@ def _beyond(rays: _Rays, t: Array, thin: float) -> tuple[Mask, Mask, Array]:
     return solid, empty if thin > 0.0 else np.zeros(t.shape, bool), after
 
 
-def _first_inside(rays: _Rays, t: Array, after: Array) -> Array:
+def _first_inside(parts: Parts, rays: Rays, index: Index, t: Array, after: Array, owner: Index) -> Array:
     """A t within (t, after], as near to t as doubling finds it, where the distance is proved negative."""
-    result, gap = after.copy(), rays.width(t)
+    result, gap = after.copy(), rays.some(index).width(t)
     searching = np.flatnonzero(t + gap < after)
     while searching.size:
-        some = rays.some(searching)
         probe = t[searching] + gap[searching]
-        _, hi = rays.evaluator.at(some.o, some.d, probe, rays.params)
+        _, hi = parts.at(probe, index[searching], owner[searching])
         result[searching[hi < 0.0]] = probe[hi < 0.0]
         gap[searching] *= 2.0
         searching = searching[(hi >= 0.0) & (t[searching] + gap[searching] < after[searching])]
     return result
 
 
-def _assembled(count: int, index: NDArray[np.intp], entry: _Entries, early: Array, clearance: Array) -> Certificate:
+def _assembled(count: int, index: Index, entry: _Entries, early: Array, clearance: Array) -> Certificate:
     status = np.full(count, Status.MISS, np.int8)
     t_lo, t_hi, contested = np.full(count, np.inf), np.full(count, np.inf), np.zeros(count, bool)
     status[index], t_lo[index], t_hi[index] = entry.status, entry.t_lo, entry.t_hi
+    clearance = clearance.copy()
     clearance[index] = np.where(entry.status == Status.MISS, np.minimum(clearance[index], entry.clearance), 0.0)
     contested[index] = (entry.status == Status.AMBIGUOUS) | entry.film
     return Certificate(status, t_lo, t_hi, clearance, early, np.full(count, np.inf), contested)
 
 
-def _classify(rays: _Rays, result: Certificate, end: Array, tolerance: float) -> None:
-    """Fills `t_late` and `contested`: see `first_roots`."""
+def _classify(parts: Parts, result: Certificate, index: Index, owners: Index, end: Array, tolerance: float) -> None:
+    """Fills `t_late` and `contested`: see `first_roots`. `owners`: of the rays `index`."""
     contested = result.contested
     contested |= (result.status == Status.MISS) & np.isfinite(result.t_early)
+    owner = np.full(result.status.shape, NOBODY)
+    owner[index] = owners
     hits = np.flatnonzero(result.status == Status.HIT)
     # distance < -tolerance begins at the first root of distance + tolerance
-    deep = _advance(rays.some(hits), _Level(1.0, -tolerance), result.t_lo[hits], end[hits])
+    deep = parts.first(-tolerance, result.t_lo[hits], end[hits], hits, owner[hits]).advance
     reached = ~deep.finished & ~deep.exhausted
     result.t_late[hits[reached]] = deep.reached[reached]
     contested[hits[~reached]] = True
     sure = hits[reached]
-    before = _advance(rays.some(sure), _Level(-1.0, -2.0 * tolerance), result.t_early[sure], result.t_lo[sure])
-    behind = _advance(rays.some(sure), _Level(-1.0, -tolerance), result.t_hi[sure], result.t_late[sure])
-    contested[sure[~(before.finished & behind.finished)]] = True
+    before = parts.below(2.0 * tolerance, result.t_early[sure], result.t_lo[sure], sure, owner[sure])
+    behind = parts.below(tolerance, result.t_hi[sure], result.t_late[sure], sure, owner[sure])
+    contested[sure[~(before & behind)]] = True

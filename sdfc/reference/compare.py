@@ -89,14 +89,15 @@ def compare(
     t: Array,
     footprint: float,
     *,
+    at_eye: float = 0.0,
     origin_scale: float | Array = 0.0,
     residual: Array | None = None,
 ) -> Comparison:
     """Holds a tracer's `hit` and `t` (n,) against the truth about the same rays.
 
-    `footprint`: the width of a pixel at t = 1. `origin_scale`: the largest coordinate of the origins, for the ulps.
-    `residual`: the distance in float64 at the tracer's hits (n,). A hit is early before t_early and late after t_late
-    (after t_hi where there is no t_late) by more than SLACK_ULPS.
+    `footprint`: how much a pixel's width grows with t; `at_eye`: its width at t = 0. `origin_scale`: the largest
+    coordinate of the origins, for the ulps. `residual`: the distance in float64 at the tracer's hits (n,). A hit is
+    early before t_early and late after t_late (after t_hi where there is no t_late) by more than SLACK_ULPS.
     """
     decided = truth.status != Status.AMBIGUOUS
     true_hit = truth.status == Status.HIT
@@ -121,7 +122,7 @@ def compare(
         )
 
     measured = both & ~truth.contested
-    pixel = footprint * np.maximum(exact, np.finfo(np.float64).tiny)
+    pixel = np.maximum(at_eye + footprint * exact, np.finfo(np.float64).tiny)
     return Comparison(
         sure=counts(decided & ~truth.contested),
         contested=counts(decided & truth.contested),

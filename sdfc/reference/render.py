@@ -19,7 +19,7 @@ from sdfc.reference.formulas import Formulas
 from sdfc.reference.light import Hits, Shader
 from sdfc.reference.rays import Rays
 from sdfc.reference.surface import Surface, SurfaceFold
-from sdfc.reference.trace import StepTracer, members_of
+from sdfc.reference.trace import StepTracer, finest, members_of
 from sdfc.scene.model import Scene
 from sdfc.shape.lower import FAR
 
@@ -78,7 +78,7 @@ class _Studio:
         hit = np.flatnonzero(t < FAR)
         seen = rays.take(hit)
         at = t[hit]
-        surface = self.fold.at(seen.at(at))
+        surface = self.fold.at(seen.at(at), seen.d, finest(at))
         at = at - self._correction(seen, at, surface)
         normal = _unit(surface.field[:3])
         along = np.sum(normal * -seen.d, axis=0)

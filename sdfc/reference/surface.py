@@ -1,9 +1,12 @@
-"""What is at points near the surface: gradient, value and material of the part whose surface it is; and distances."""
+"""What is at points near the surface: gradient, value and material of the part whose surface it is; and distances.
+
+The tree is asked a little way back along the ray: the twin of sdfc/glsl/surface, which says why.
+"""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import assert_never
 
 import numpy as np
@@ -31,30 +34,37 @@ from sdfc.plan.steps import (
 )
 from sdfc.reference.formulas import Formulas
 from sdfc.reference.rays import box_gap
-from sdfc.reference.trace import box_of, members_of
+from sdfc.reference.trace import CUT, box_of, members_of
 from sdfc.shape.lower import FAR
 
 Array = NDArray[np.float64]
+_BACK = 16.0 * CUT  # so far back, in units of the scene's radius
+_SUNK = 3.0  # what is marched is sunk so far in an intersection (sdfc/reference/trace)
 _NEAR = 1e-2  # a point on a union's surface is no further than this from the box of the member that it is on
 
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """`field` (4, n): gradient and value. `material` (n,): its index in the plan. `look` (13, n): see PROPERTIES."""
+    """`field` (4, n): gradient and value. `material` (n,): its index in the plan. `look` (13, n): see PROPERTIES.
+
+    `rank` (n,) is the value of what is traced.
+    """
 
     field: Array
+    rank: Array
     material: NDArray[np.int64]
     look: Array
 
     def put(self, index: NDArray[np.int64], other: Surface) -> None:
         """Takes over all of `other` at `index`."""
         self.field[:, index] = other.field
+        self.rank[index] = other.rank
         self.material[index] = other.material
         self.look[:, index] = other.look
 
     def take(self, chosen: NDArray[np.bool_] | NDArray[np.int64]) -> Surface:
         """Some of the points."""
-        return Surface(self.field[:, chosen], self.material[chosen], self.look[:, chosen])
+        return Surface(self.field[:, chosen], self.rank[chosen], self.material[chosen], self.look[:, chosen])
 
 
 class SurfaceFold:
@@ -67,9 +77,12 @@ class SurfaceFold:
         self._looks = np.stack([formulas.material(m) for m in plan.materials], axis=1)
         self._boxes: dict[int, Box] = {}
 
-    def at(self, p: Array) -> Surface:
-        """The surface at points (3, n) that lie on it."""
-        return self._fold(self._plan.root, p)
+    def at(self, p: Array, d: Array, fine: Array) -> Surface:
+        """The surface at hits p (3, n) of rays along unit vectors d (3, n), right to `fine` (n,)."""
+        back = -_BACK * d
+        found = self._fold(self._plan.root, p + back, fine, np.zeros_like(fine))
+        found.field[3] -= np.sum(found.field[:3] * back, axis=0)
+        return found
 
     def distance(self, p: Array, reach: float) -> Array:
         """What tells how open the sky is: at most the distance (n,) to what is within `reach`; the right sign."""
@@ -77,80 +90,83 @@ class SurfaceFold:
 
     # surfaces
 
-    def _fold(self, step: Step, p: Array) -> Surface:
+    def _fold(self, step: Step, p: Array, fine: Array, sunk: Array) -> Surface:
         match step:
             case Closed():
-                return self._leaf(step.part, p, step.inside)
+                return self._leaf(step.part, p, step.inside, np.zeros_like(fine))
             case Ball():
-                found = self._leaf(step.part, p, step.inside)
                 # over its constant: then the gradient says how much of a distance the value is
-                return replace(found, field=found.field / max(step.lipschitz, 1e-9))
+                return self._leaf(step.part, p, step.inside, sunk, scale=1.0 / max(step.lipschitz, 1e-9))
             case Tangent():
-                return self._leaf(step.part, p, True)
+                return self._leaf(step.part, p, True, sunk)
             case Chord():
-                return self._leaf(step.part, p, False)
+                return self._leaf(step.part, p, False, sunk)
             case Blend():
-                return self._blend(step.tree, p)
+                return self._blend(step.tree, p, sunk)
             case Within():
-                return self._fold(step.step, p)
+                return self._fold(step.step, p, fine, sunk)
             case Any() | Many():
-                return self._nearest(members_of(step), p)
+                return self._nearest(members_of(step), p, fine, sunk)
             case All():
-                first, *rest = (self._fold(s, p) for s in step.steps)
+                first, *rest = (self._fold(s, p, fine, _SUNK * fine) for s in step.steps)
                 for other in rest:
-                    farther = np.flatnonzero(other.field[3] > first.field[3])
+                    farther = np.flatnonzero(other.rank > first.rank)
                     first.put(farther, other.take(farther))
                 return first
             case _:
                 assert_never(step)
 
-    def _nearest(self, members: tuple[Step, ...], p: Array) -> Surface:
+    def _nearest(self, members: tuple[Step, ...], p: Array, fine: Array, sunk: Array) -> Surface:
         """Only the members whose boxes are near are asked: a scene may have thousands."""
         result = self._empty(p.shape[1])
         for member in members:
             near = np.flatnonzero(box_gap(p, self._box(member)) < _NEAR)
             if near.size:
-                found = self._fold(member, p[:, near])
-                nearer = np.flatnonzero(found.field[3] < result.field[3, near])
+                found = self._fold(member, p[:, near], fine[near], sunk[near])
+                nearer = np.flatnonzero(found.rank < result.rank[near])
                 result.put(near[nearer], found.take(nearer))
         return result
 
-    def _leaf(self, part: Part, p: Array, inside: bool, formula: bool = False) -> Surface:
-        field = self._formulas.surface(part, p, formula)
+    def _leaf(
+        self, part: Part, p: Array, inside: bool, sunk: Array, formula: bool = False, scale: float = 1.0
+    ) -> Surface:
+        field = self._formulas.surface(part, p, formula) * (scale if inside else -scale)
         if len(part.looks) > 1:
             index = self._formulas.look(part, p)
         else:
             index = np.full(p.shape[1], self._index[id(part.material)])
-        return Surface(field if inside else -field, index, self._looks[:, index])
+        return Surface(field, field[3] + sunk, index, self._looks[:, index])
 
-    def _blend(self, tree: BlendTree, p: Array) -> Surface:
+    def _blend(self, tree: BlendTree, p: Array, sunk: Array) -> Surface:
         match tree:
             case Tangent():
-                return self._leaf(tree.part, p, True, formula=True)
+                return self._leaf(tree.part, p, True, sunk, formula=True)
             case Falling():
-                return self._leaf(tree.part, p, tree.inside, formula=True)
+                return self._leaf(tree.part, p, tree.inside, sunk, formula=True)
             case BlendUnion():
-                first, *rest = (self._blend(t, p) for t in tree.operands)
+                first, *rest = (self._blend(t, p, sunk) for t in tree.operands)
                 for other in rest:
-                    nearer = np.flatnonzero(other.field[3] < first.field[3])
+                    nearer = np.flatnonzero(other.rank < first.rank)
                     first.put(nearer, other.take(nearer))
                 return first
             case BlendNode():
-                return self._blended(tree, self._blend(tree.first, p), self._blend(tree.second, p))
+                return self._blended(tree, self._blend(tree.first, p, sunk), self._blend(tree.second, p, sunk), sunk)
             case _:
                 assert_never(tree)
 
-    def _blended(self, tree: BlendNode, a: Surface, b: Surface) -> Surface:
+    def _blended(self, tree: BlendNode, a: Surface, b: Surface, sunk: Array) -> Surface:
         """Both gradients by the blend's own derivatives; the look is mixed in their proportion."""
         by_a, by_b, value = self._formulas.weights(tree.shape, a.field[3], b.field[3])
         share = by_b / np.maximum(by_a + by_b, 1e-6)
         field = np.concatenate([by_a * a.field[:3] + by_b * b.field[:3], value[None]])
-        return Surface(field, np.where(by_b > by_a, b.material, a.material), a.look + (b.look - a.look) * share)
+        material = np.where(by_b > by_a, b.material, a.material)
+        return Surface(field, value + sunk, material, a.look + (b.look - a.look) * share)
 
     def _empty(self, count: int) -> Surface:
         field = np.zeros((4, count))
         field[1], field[3] = 1.0, FAR
-        return Surface(field, np.zeros(count, np.int64), np.repeat(self._looks[:, :1], count, axis=1))
+        looks = np.repeat(self._looks[:, :1], count, axis=1)
+        return Surface(field, field[3].copy(), np.zeros(count, np.int64), looks)
 
     # distances
 

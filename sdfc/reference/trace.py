@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import assert_never
 
 import numpy as np
@@ -24,7 +24,7 @@ from sdfc.plan.steps import (
     Within,
     is_closed,
 )
-from sdfc.plan.touch import Side, is_grown
+from sdfc.plan.touch import Side, are_thick_together, convex_of, is_grown, thickest_skin
 from sdfc.reference.formulas import Formulas, Interval
 from sdfc.reference.rays import Rays, box_interval
 from sdfc.shape.lower import FAR
@@ -48,8 +48,21 @@ class _Walk:
     """What is known of some rays before the first step."""
 
     rays: Rays
-    intervals: dict[tuple[int, Side], list[Interval]]
+    intervals: dict[tuple[int, Side, float], list[Interval]]
     boxes: dict[int, tuple[Array, Array]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Mode:
+    """How a step is asked.
+
+    Inside an intersection (`cut`) what is marched is sunk a little: by more than a film is thick that faces leave
+    which coincide. In a `core`, so is what is solved in closed form, by `skin` times as much (sdfc/plan/touch).
+    """
+
+    cut: bool = False
+    core: bool = False
+    skin: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +82,8 @@ class StepTracer:
 
     def __init__(self, plan: Plan, formulas: Formulas) -> None:
         self._formulas = formulas
+        self._thick: dict[int, bool] = {}
+        self._skins: dict[int, float] = {}
         boxed = [(member, box_of(member)) for member in members_of(plan.root)]
         self._members = [(member, box) for member, box in boxed if not box.is_empty]
 
@@ -88,7 +103,7 @@ class StepTracer:
 
     def tolerance(self, rays: Rays, t: Array) -> Array:
         """How near counts as there, (n,): a small part of a pixel."""
-        return np.maximum(_finest(t), PROVEN_TOLERANCE * rays.half_pixel(t))
+        return np.maximum(finest(t), PROVEN_TOLERANCE * rays.half_pixel(t))
 
     def _solve(self, member: Step, rays: Rays, start: Array, limit: Array) -> tuple[Array, Array]:
         """Steps until the tree answers where the ray is, or past the limit; only rays still on their way."""
@@ -101,7 +116,7 @@ class StepTracer:
         for _ in range(MOST_STEPS):
             if not here.index.size:
                 break
-            answer = self._next(member, walk, here)
+            answer = self._next(member, walk, here, _Mode())
             counts[here.index] += 1.0
             t[here.index] = answer
             going = np.flatnonzero((answer > here.t) & (answer < limit[here.index]))
@@ -114,19 +129,20 @@ class StepTracer:
         boxes = {id(step): box_interval(rays, box) for step, box in _boxes_below(member)}
         return _Walk(rays, {}, boxes)
 
-    def _intervals(self, leaf: Closed, walk: _Walk, core: bool = False) -> list[Interval]:
+    def _intervals(self, leaf: Closed, walk: _Walk, mode: _Mode) -> list[Interval]:
         """The rays' intervals with a leaf, found when they are first asked for."""
-        side = Side.CUT if not leaf.inside else Side.CORE if core else Side.WHOLE
-        key = id(leaf.part), side
+        side = Side.CUT if not leaf.inside else Side.CORE if mode.core else Side.WHOLE
+        skin = 1.0 if side is Side.WHOLE else mode.skin
+        key = id(leaf.part), side, skin
         if key not in walk.intervals:
-            walk.intervals[key] = self._formulas.intervals(leaf.part, walk.rays.o, walk.rays.d, _SIZES[side])
+            walk.intervals[key] = self._formulas.intervals(leaf.part, walk.rays.o, walk.rays.d, skin * _SIZES[side])
         return walk.intervals[key]
 
     def _start(self, step: Step, walk: _Walk, start: Array) -> Array:
         """Where stepping may begin: what boxes and closed-form parts prove before any value is known."""
         match step:
             case Closed(inside=True):
-                return _enter(self._intervals(step, walk), start)
+                return _enter(self._intervals(step, walk, _Mode()), start)
             case Within():
                 enter, leave = walk.boxes[id(step)]
                 return _enter([Interval(enter, leave)], start)
@@ -137,72 +153,83 @@ class StepTracer:
             case _:
                 return start.copy()
 
-    def _next(self, step: Step, walk: _Walk, here: _Place, cut: bool = False, core: bool = False) -> Array:
-        """The answers of a step, (n,).
-
-        Inside an intersection (`cut`) what is marched is sunk a little: by more than a film is thick that faces leave
-        which coincide. In a `core`, so is what is solved in closed form (sdfc/plan/touch).
-        """
+    def _next(self, step: Step, walk: _Walk, here: _Place, mode: _Mode) -> Array:
+        """The answers of a step, (n,)."""
         match step:
             case Closed():
-                intervals = self._intervals(step, walk, core)
+                intervals = self._intervals(step, walk, mode)
                 taken = [Interval(i.enter[here.index], i.leave[here.index]) for i in intervals]
                 return _enter(taken, here.t) if step.inside else _leave(taken, here.t)
             case Tangent():
-                return self._tangent(step.part, here, cut)
+                return self._tangent(step.part, here, mode.cut)
             case Chord():
                 return self._chord(step, walk, here)
             case Ball():
-                return self._ball(step, here, cut)
+                return self._ball(step, here, mode.cut)
             case Blend():
-                return self._blend(step, here, cut)
+                return self._blend(step, here, mode.cut)
             case Within():
-                return self._within(step, walk, here, cut, core)
+                return self._within(step, walk, here, mode)
             case Any() | Many():
-                answers = [self._next(s, walk, here, cut, core) for s in members_of(step)]
+                answers = [self._next(s, walk, here, mode) for s in members_of(step)]
                 return _least(answers) if answers else np.full(len(here.t), FAR)
             case All():
-                return self._all(step, walk, here, core)
+                return self._all(step, walk, here, _Mode(True, mode.core, self._skin(step)))
             case _:
                 assert_never(step)
 
-    def _all(self, step: All, walk: _Walk, here: _Place, core: bool) -> Array:
+    def _all(self, step: All, walk: _Walk, here: _Place, mode: _Mode) -> Array:
         """The greatest answer; where one part already answers further on, the dearer ones are not asked."""
         grown = [s for s in step.steps if is_grown(s)]
-        met = len(grown) > 1 and not core
-        answer = self._met(grown, walk, here) if met else here.t.copy()
+        met = not mode.core and self._may_touch(step, grown)
+        answer = self._met(grown, walk, here, mode) if met else here.t.copy()
         undecided = np.flatnonzero(answer <= here.t)
         rest = [s for s in step.steps if not (met and is_grown(s))]
         for part in sorted(rest, key=lambda s: not is_closed(s)):
             if not undecided.size:
                 break
             asked = here if undecided.size == len(here.t) else here.take(undecided)
-            answer[undecided] = np.maximum(answer[undecided], self._next(part, walk, asked, cut=True, core=core))
+            answer[undecided] = np.maximum(answer[undecided], self._next(part, walk, asked, mode))
             undecided = np.flatnonzero(answer <= here.t)
         return answer
 
-    def _met(self, grown: list[Step], walk: _Walk, here: _Place) -> Array:
+    def _skin(self, step: All) -> float:
+        """How many times as thick as it was asked for the skin of a part may be."""
+        if id(step) not in self._skins:
+            skin = thickest_skin(step)
+            self._skins[id(step)] = 1.0 if skin is None else float(self._formulas.constant(skin)[0])
+        return self._skins[id(step)]
+
+    def _may_touch(self, step: All, grown: list[Step]) -> bool:
+        """Whether the parts that are grown may have no more than a face in common."""
+        if id(step) not in self._thick:
+            convex = convex_of(grown)
+            alone = len(convex) == len(grown)
+            self._thick[id(step)] = len(grown) < 2 or (alone and are_thick_together([s.part for s in convex]))
+        return not self._thick[id(step)]
+
+    def _met(self, grown: list[Step], walk: _Walk, here: _Place, mode: _Mode) -> Array:
         """What is in all, and but for one of them in their cores: the least of the greatest, part by part."""
-        wholes, cores = ([self._next(s, walk, here, cut=True, core=core) for s in grown] for core in (False, True))
+        wholes, cores = ([self._next(s, walk, here, m) for s in grown] for m in (mode, replace(mode, core=True)))
         met, core = wholes[0], cores[0]
         for whole, other in zip(wholes[1:], cores[1:], strict=True):
             met = np.minimum(np.maximum(met, other), np.maximum(core, whole))
             core = np.maximum(core, other)
         return met
 
-    def _within(self, step: Within, walk: _Walk, here: _Place, cut: bool, core: bool) -> Array:
+    def _within(self, step: Within, walk: _Walk, here: _Place, mode: _Mode) -> Array:
         enter, leave = (end[here.index] for end in walk.boxes[id(step)])
         answer = np.where((here.t < enter) & (enter < leave), enter, FAR)
         inside = np.flatnonzero((here.t >= enter) & (here.t < leave))
         if inside.size:
-            ahead = self._next(step.step, walk, here.take(inside), cut, core)
+            ahead = self._next(step.step, walk, here.take(inside), mode)
             answer[inside] = np.where(ahead < leave[inside], ahead, FAR)
         return answer
 
     def _tangent(self, part: Part, here: _Place, cut: bool) -> Array:
         """The root of a convex function's tangent: never past the surface."""
         value, slope = self._formulas.slope(part, here.rays.at(here.t), here.rays.d)
-        near = _finest(here.t)
+        near = finest(here.t)
         value = value + 3.0 * near if cut else value
         fall = 1e-12 - slope
         ahead = here.t + (value - 0.5 * near) / np.where(fall > 0.0, fall, 1.0) * SHY
@@ -211,7 +238,7 @@ class StepTracer:
     def _chord(self, step: Chord, walk: _Walk, here: _Place) -> Array:
         """Out of a convex function from within: clear up to where the chord of its (concave) depth ends."""
         _, box_end = walk.boxes[id(step)]
-        near = _finest(here.t)
+        near = finest(here.t)
         value, slope = self._formulas.slope(step.part, here.rays.at(here.t), here.rays.d)
         depth = 3.0 * near - value
         tangent = np.where(slope > 1e-6, depth / np.where(slope > 1e-6, slope, 1.0), FAR)
@@ -223,7 +250,7 @@ class StepTracer:
 
     def _ball(self, step: Ball, here: _Place, cut: bool) -> Array:
         """The empty ball around the point."""
-        near = _finest(here.t) if cut else self.tolerance(here.rays, here.t)
+        near = finest(here.t) if cut else self.tolerance(here.rays, here.t)
         radius = self._formulas.value(step.part, here.rays.at(here.t)) / max(step.lipschitz, 1e-9)
         if not step.inside:  # a hit on what is cut away lies inside it, by more than its own tolerance
             radius = 3.0 * near - radius
@@ -233,12 +260,12 @@ class StepTracer:
 
     def _blend(self, step: Blend, here: _Place, cut: bool) -> Array:
         """A smooth union by empty balls: slower than by the lines below its operands, and as safe."""
-        near = _finest(here.t)
+        near = finest(here.t)
         value = self._formulas.value(step.part, here.rays.at(here.t)) + (3.0 * near if cut else 0.0)
         return np.where(value <= near, here.t, here.t + value / max(step.lipschitz, 1.0) * SHY)
 
 
-def _finest(t: Array) -> Array:
+def finest(t: Array) -> Array:
     """The least tolerance that is asked for, (n,)."""
     return SMALLEST_TOLERANCE * np.maximum(1.0, np.abs(t))
 

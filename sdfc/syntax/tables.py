@@ -12,6 +12,8 @@ from pathlib import Path
 
 from lark import Lark, __version__
 
+from sdfc.cache import folder
+
 
 def load(grammar: str, callbacks: object) -> Lark:
     """An LALR parser of `grammar` that calls `callbacks` (methods named as its rules) as it reduces."""
@@ -24,22 +26,12 @@ def load(grammar: str, callbacks: object) -> Lark:
     return made
 
 
-def cache_folder() -> Path:
-    """Where sdfc keeps what it can make again."""
-    base = os.environ.get("XDG_CACHE_HOME", "")
-    return (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "sdfc"
-
-
-def _place(grammar: str) -> Path | None:
+def _place(grammar: str) -> Path:
     key = "\0".join([grammar, __version__, sys.version]).encode()
-    with contextlib.suppress(RuntimeError):  # no home folder
-        return cache_folder() / f"grammar-{hashlib.sha256(key).hexdigest()[:32]}.tables"
-    return None
+    return folder() / f"grammar-{hashlib.sha256(key).hexdigest()[:32]}.tables"
 
 
-def _kept(path: Path | None, callbacks: object) -> Lark | None:
-    if path is None:
-        return None
+def _kept(path: Path, callbacks: object) -> Lark | None:
     try:
         with path.open("rb") as file:
             # what Lark.load does, which has no way to give the callbacks
@@ -48,10 +40,8 @@ def _kept(path: Path | None, callbacks: object) -> Lark | None:
         return None
 
 
-def _keep(parser: Lark, path: Path | None) -> None:
+def _keep(parser: Lark, path: Path) -> None:
     """Written aside, then renamed: another process never sees half a file. Where nothing can be written, nothing is."""
-    if path is None:
-        return
     with contextlib.suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:

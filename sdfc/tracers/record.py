@@ -34,6 +34,8 @@ class Tracer:
     needs_steps: bool  # whether it reads the generated `events` and `march`
     needs_span: bool = False  # whether it reads `vec4 map_span(vec3 p, vec3 d, float s)`
     parameters: tuple[Parameter, ...] = ()
+    pace: float = 1.0  # its passes, of those that sphere tracing takes: a guide for predictions (ALGORITHMS E)
+    weight: float = 1.0  # what a pass takes, in values of the scene
     weak: Mapping[str, str] = field(default_factory=dict)  # families of `sdfc stress` it may fail in, and why
 
     @property

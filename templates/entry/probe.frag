@@ -17,7 +17,7 @@ void main() {
     float t = trace(o, d, {{ first_start }}, FAR);
     bool hit = t < FAR;
     vec3 p = o + t * d;
-    Surface s = surface(hit ? p : vec3(0.0), d, rounding(t));
+    Surface s = surface(hit ? p : vec3(0.0), d, rounding(hit ? t : 0.0));
 {% filter indent(4, true) %}
 {% include "shade/polish.glsl" %}
 {% endfilter %}

@@ -50,7 +50,7 @@ vec4 radiance() {
         if (light < 0) {
             hit = t < FAR;
             p = o + t * d;
-            s = surface(hit ? p : vec3(0.0), d, rounding(t));
+            s = surface(hit ? p : vec3(0.0), d, rounding(hit ? t : 0.0));
 {% filter indent(12, true) %}
 {% include "shade/polish.glsl" %}
 {% endfilter %}

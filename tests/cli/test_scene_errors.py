@@ -98,7 +98,7 @@ def broken_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
     """A compiler with a bug in it."""
     import sdfc.pipeline
 
-    def fail(*_: object) -> None:
+    def fail(*_: object, **__: object) -> None:
         raise KeyError("lost")
 
     monkeypatch.setattr(sdfc.pipeline, "normalise", fail)

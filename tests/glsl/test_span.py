@@ -118,7 +118,8 @@ def test_the_map_keeps_to_its_span(gl: moderngl.Context, name: str) -> None:
     safe = tau < np.where(span[2] < 0.0, (start - slack) / np.maximum(-span[2], 1e-9), np.inf)
     assert (values[safe & clear] > 0.0).all()
     smooth = (span[2] > -1.0) & (span[3] < 1.0)
-    assert smooth.mean() > 0.05, "no piece is known any better than a ball knows it"
+    if name != "many":  # of a table no more is asked than the distance
+        assert smooth.mean() > 0.05, "no piece is known any better than a ball knows it"
     assert (values >= start + span[2] * tau - slack)[:, smooth].all()
     assert (values <= start + span[3] * tau + slack)[:, smooth].all()
 

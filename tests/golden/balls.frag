@@ -44,10 +44,17 @@ float enter(vec4 v, float t) { return min(enter(v.xy, t), enter(v.zw, t)); }
 float leave(vec2 v, float t) { return t < v.x || t >= v.y ? t : v.y; }
 float leave(vec4 v, float t) { return leave(v.zw, leave(v.xy, t)); }
 
-// what is in both; a run no longer than what two skins share is the face of two solids that only touch
+// what is in both
 vec2 both(vec2 u, vec2 v) {
     vec2 w = vec2(max(u.x, v.x), min(u.y, v.y));
-    return w.x + 4.0 * GROW < w.y ? w : vec2(FAR, -FAR);
+    return w.x < w.y ? w : vec2(FAR, -FAR);
+}
+
+// Convex solids in xy, their cores in zw. A run counts where all but one hold it by their cores: solids that only touch
+// share their skins, at any slant, but neither's core meets the other's skin.
+vec4 meeting(vec4 u, vec4 v) {
+    vec2 first = both(u.xy, v.zw), second = both(u.zw, v.xy);
+    return vec4(min(first.x, second.x), max(first.y, second.y), both(u.zw, v.zw));
 }
 
 // How near counts as there, at parameter t of the ray at hand. What converges fast is asked for all that float32 has;
@@ -199,22 +206,28 @@ float trace(vec3 o, vec3 d, float start, float limit) {
 
 struct Surface {
     vec4 field;  // gradient and value
+    float rank;  // the value of what is traced
     float material;
 };
 
-Surface nearer(Surface a, Surface b) { if (b.field.w < a.field.w) return b; return a; }
-Surface farther(Surface a, Surface b) { if (b.field.w > a.field.w) return b; return a; }
+Surface nearer(Surface a, Surface b) { if (b.rank < a.rank) return b; return a; }
+Surface farther(Surface a, Surface b) { if (b.rank > a.rank) return b; return a; }
 
-Surface unpainted_material(vec4 field) {
-    return Surface(field, 0.0);
+Surface unpainted_material(vec4 field, float sunk) {
+    return Surface(field, field.w + sunk, 0.0);
 }
 
-Surface surface(vec3 p) {
-    Surface s1 = unpainted_material(torus_surface(p, 0.52223295, 0.17407766));
+Surface surface(vec3 p, vec3 d, float fine) {
+    vec3 back = -4.0 * fine * d;
+    p += back;
+    float sunk = 3.0 * fine;  // what is marched, in an intersection
+    Surface s1 = unpainted_material(torus_surface(p, 0.52223295, 0.17407766), sunk);
     vec4 g_twist_1 = twist_1_surface(p * 1.1489125);  // test.sdf:1:41
     vec3 q_2 = g_twist_1.xyz * 1.1489125;
-    s1 = farther(s1, unpainted_material(-vec4(q_2.xyz, g_twist_1.w) * 0.87038827));
-    return s1;
+    s1 = farther(s1, unpainted_material(-vec4(q_2.xyz, g_twist_1.w) * 0.87038827, sunk));
+    Surface s = s1;
+    s.field.w -= dot(s.field.xyz, back);
+    return s;
 }
 
 // Radiance (VEC3) of the sky along a unit direction.
@@ -390,7 +403,7 @@ vec4 radiance() {
         if (light < 0) {
             hit = t < FAR;
             p = o + t * d;
-            s = surface(hit ? p : vec3(0.0));
+            s = surface(hit ? p : vec3(0.0), d, rounding(hit ? t : 0.0));
             // at a point without a gradient (a cone's tip, a medial axis) the surface faces the eye
             s.field.xyz = dot(s.field.xyz, s.field.xyz) > 1e-12 ? s.field.xyz : -d;
             // one Newton step to the surface itself, off the skin that closes cracks and off the tolerance of marching

@@ -99,6 +99,8 @@ def test_claims() -> None:
     assert claims.ray is not None
     first, second = claims.ray(constant((1.0, 0.0, 0.0)), constant((0.0, 4.0, 0.0)), constant(1), environment)
     assert [value(e) for e in (*first, *second)] == [(-2,), (1,), (2,), (5,)]
+    assert not claims.ray_is_dear
+    assert field("f(dear: length) = length(p) - dear dear ray [-dear, dear] where k = dear exact").claims.ray_is_dear
     assert claims.lowering is not None and value(claims.lowering(environment)) == (1.5,)
     assert claims.dual == "g"
     ((condition, message),) = made.requirements

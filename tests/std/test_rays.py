@@ -23,7 +23,7 @@ def test_the_solids_that_must_have_rays_have_them() -> None:
     wanted = """
         plane slab sphere ellipsoid box cylinder cone capped_cone round_cone capsule convex_polyhedron wedge pyramid
         octahedron tetrahedron dodecahedron icosahedron prism hex_prism triangular_prism elliptical_cone quadric
-        hyperboloid paraboloid lens cut_sphere solid_angle tube elliptical_cylinder
+        hyperboloid paraboloid lens cut_sphere solid_angle tube elliptical_cylinder torus
     """
     assert set(wanted.split()) <= set(_WITH_RAYS)
 

@@ -96,17 +96,17 @@ class Errors:
     hits: int
     missed: int
     false: int
-    early: int
-    late: int
-    not_finite: int
-    stalls: int
-    contested: int
-    contested_wrong: int
-    ambiguous: int
-    mean_pixels: float
-    pixels: Spread
-    ulps: Spread
-    residual: Spread
+    early: int = 0
+    late: int = 0
+    not_finite: int = 0
+    stalls: int = 0
+    contested: int = 0
+    contested_wrong: int = 0
+    ambiguous: int = 0
+    mean_pixels: float = math.nan
+    pixels: Spread = Spread()
+    ulps: Spread = Spread()
+    residual: Spread = Spread()
     normals: Spread = Spread()
 
     @property
@@ -117,7 +117,8 @@ class Errors:
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """A cell's result. `key` is of all that it depends on: where it changes, the cell is measured anew.
+    """A cell's result. `key` is of all that it depends on: where it changes, the cell is measured anew. `note`: of what
+    was measured (what the planner chose).
 
     `illegal`: why this tracer may not trace this scene; there is nothing else then. `errors`: by the set of rays,
     `grid` (every pixel of a small picture) and `random` (pixels of the timed one).
@@ -127,6 +128,7 @@ class Record:
     key: str
     when: str
     commit: str
+    note: str = ""
     illegal: str | None = None
     timing: Timing | None = None
     building: Building | None = None
@@ -145,7 +147,7 @@ class Record:
         return math.nan if grid is None else grid.pixels.p99
 
     def to_json(self) -> Json:
-        """Plain values; NaN is null, which JSON has."""
+        """Plain values, to six digits; what is not finite is null, which JSON has."""
         made: Json = _plain(dataclasses.asdict(self))
         return made
 
@@ -157,7 +159,7 @@ class Record:
             name: None if given[name] is None else kind(**_numbers(given[name]))
             for name, kind in (("timing", Timing), ("building", Building), ("work", Work))
         }
-        kept = {name: given[name] for name in ("key", "when", "commit", "illegal")}
+        kept = {name: given[name] for name in ("key", "when", "commit", "note", "illegal")}
         return cls(cell=Cell(**given["cell"]), errors=errors, **kept, **parts)
 
 
@@ -178,6 +180,6 @@ def _plain(value: Any) -> Any:
         case dict():
             return {name: _plain(v) for name, v in value.items()}
         case float():
-            return value if math.isfinite(value) else None
+            return float(f"{value:.6g}") if math.isfinite(value) else None
         case _:
             return value

@@ -17,8 +17,8 @@ _NOTHING: Mapping[str, tuple[float, ...]] = MappingProxyType({})
 class Case:
     """A scene's text, its camera and the values of its params. Cases of one text share their shaders.
 
-    `size` is (width, height) where the case needs one of its own: single lines of rays. `is_odd` asks for an odd size, so
-    that the ray in the middle goes exactly where the camera looks.
+    `size` is (width, height) where the case needs one of its own: single lines of rays. `is_odd` asks for an odd size,
+    so that the ray in the middle goes exactly where the camera looks.
     """
 
     name: str
@@ -36,7 +36,7 @@ class Case:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Family:
-    """Cases that are hard for the same reason. `name` is one word: what the user asks for, and a tracer's `weak` says."""
+    """Cases that are hard for the same reason. `name` is one word: what users ask for, and a tracer's `weak` says."""
 
     name: str
     doc: str

@@ -21,7 +21,7 @@ _LINE = (3, 65)  # rays above each other
 
 _CORNERED = {
     "box": ("box(size: [1, 1, 1])", (0.5, 0.5, 0.5)),
-    "octahedron": ("octahedron(radius: 0.6)", (0.0, 0.6, 0.0)),
+    "octahedron": ("octahedron(radius: 0.6).rotate(y: 20deg)", (0.0, 0.6, 0.0)),
     "wedge": ("wedge(size: [1, 1, 1])", (0.5, 0.5, 0.5)),
     "pyramid": ("pyramid()", (0.0, 0.5, 0.0)),
     "prism": ("prism(sides: 5, radius: 0.5, height: 0.8)", (0.5, 0.0, 0.4)),
@@ -131,7 +131,7 @@ def _cornered(name: str, solid: str, corner: Point) -> tuple[Case, ...]:
         for direction in _DIAGONALS
         for way, view in (
             (f"{direction}", look(_plus(corner, direction, 3.0), corner, 0.4)),
-            (f"{direction} in parallel", parallel(_plus(corner, direction, 3.0), corner, 1e-3)),
+            (f"{direction} in parallel", parallel(_plus(corner, direction, 3.0), corner, 0.02)),
         )
     )
 
@@ -148,8 +148,10 @@ def _through(name: str, solid: str, point: Point) -> tuple[Case, ...]:
     text = scene(solid)
     return (
         Case(name=name, text=text, view=look(_plus(point, (1.3, 0.9, 2.0)), point), is_odd=True),
-        Case(name=f"{name} along z", text=text, view=look(_plus(point, (0.0, 0.0, 3.0)), point), is_odd=True),
-        Case(name=f"{name} along y", text=text, view=parallel(_plus(point, (0.0, 3.0, 0.0)), point, 0.6), is_odd=True),
+        Case(name=f"{name} from ahead", text=text, view=look(_plus(point, (0.0, 1.1, 2.6)), point), is_odd=True),
+        Case(
+            name=f"{name} from above", text=text, view=parallel(_plus(point, (0.0, 3.0, 0.0)), point, 0.6), is_odd=True
+        ),
     )
 
 

@@ -8,13 +8,20 @@ _CORNER = look((2.3, 1.9, 2.9))
 _RATES = (0.0, 1.0, 30.0, 90.0, 360.0, 1440.0)  # degrees per length
 
 _REPEATED = {
-    "a corner of each cell": "sphere(radius: 0.1).translate([0.2, 0.2, 0.2]).repeat(spacing: [0.5, 0.5, 0.5], count: [4, 4, 4])",
-    "across the cell's wall": "box(size: [0.2, 0.2, 0.2]).translate([0.25, 0, 0]).repeat(spacing: [0.5, 0.5, 0.5], count: [4, 4, 4])",
-    "wider than a cell": "capsule(from: [-0.4, 0, 0], to: [0.4, 0, 0], radius: 0.08).repeat(spacing: [0.5, 0.5, 0.5], count: [3, 4, 3])",
-    "an even and an odd count": "box(size: [0.3, 0.2, 0.25]).translate([0.05, 0.1, 0]).repeat(spacing: [0.4, 0.5, 0.6], count: [4, 3, 1])",
-    "no distance": "ellipsoid(radii: [0.2, 0.1, 0.05]).translate([0.1, 0, 0]).repeat(spacing: [0.5, 0.4, 0.3], count: [3, 3, 3])",
-    "without end": "sphere(radius: 0.15).translate([0.1, 0.2, 0]).repeat(spacing: [0.6, 0.6, 0.6]) & sphere(radius: 1.2)",
-    "mirrored": "sphere(radius: 0.2).translate([0.3, 0.1, 0]).mirror_repeat(spacing: [0.6, 0.6, 0.6]) & sphere(radius: 1.2)",
+    "a corner of each cell": "sphere(radius: 0.1).translate([0.2, 0.2, 0.2])"
+    ".repeat(spacing: [0.5, 0.5, 0.5], count: [4, 4, 4])",
+    "across the cell's wall": "box(size: [0.2, 0.2, 0.2]).translate([0.25, 0, 0])"
+    ".repeat(spacing: [0.5, 0.5, 0.5], count: [4, 3, 1])",
+    "wider than a cell": "capsule(from: [-0.4, 0, 0], to: [0.4, 0, 0], radius: 0.08)"
+    ".repeat(spacing: [0.5, 0.5, 0.5], count: [3, 4, 3])",
+    "an even and an odd count": "box(size: [0.3, 0.2, 0.25]).translate([0.05, 0.1, 0])"
+    ".repeat(spacing: [0.4, 0.5, 0.6], count: [4, 3, 1])",
+    "no distance": "ellipsoid(radii: [0.2, 0.1, 0.05]).translate([0.1, 0, 0])"
+    ".repeat(spacing: [0.5, 0.4, 0.3], count: [3, 3, 3])",
+    "without end": "sphere(radius: 0.15).translate([0.1, 0.2, 0])"
+    ".repeat(spacing: [0.6, 0.6, 0.6]) & sphere(radius: 1.2)",
+    "mirrored": "sphere(radius: 0.2).translate([0.3, 0.1, 0])"
+    ".mirror_repeat(spacing: [0.6, 0.6, 0.6]) & sphere(radius: 1.2)",
     "around an axis": "box(size: [0.2, 0.5, 0.2]).translate([0.7, 0, 0.3]).polar_repeat(count: 7)",
     "in a kaleidoscope": "box(size: [0.4, 0.5, 0.2]).translate([0.6, 0, 0.3]).mirror_polar_repeat(count: 8)",
 }
@@ -24,7 +31,8 @@ _DETAILED = {
     "diamond": "diamond(period: {p}, thickness: {t}) & sphere(radius: 0.7)",
     "displaced": "sphere(radius: 0.6).displace(amplitude: {t}, wavelength: {p})",
     "waves": "waves(amplitude: {t}, wavelength: {p}) & box(size: [1.4, 1.4, 1.4])",
-    "layers": "sphere(radius: 0.6).onion(thickness: {t}, spacing: {p}, layers: 4) - box(size: [2, 2, 2]).translate([1, 1, 1])",
+    "layers": "sphere(radius: 0.6).onion(thickness: {t}, spacing: {p}, layers: 4)"
+    " - box(size: [2, 2, 2]).translate([1, 1, 1])",
 }
 _PERIODS = (0.4, 0.1, 0.03)
 
@@ -37,11 +45,13 @@ def _warped(name: str, solid: str) -> tuple[Case, ...]:
 
 
 def _chain(count: int) -> str:
-    """A union whose every operand but one is a union: a spiral of balls."""
-    text = "sphere(radius: 0.05)"
-    for i in range(1, count):
-        place = f"[{0.618 * i % 1 * 1.6 - 0.8:.4f}, {i / count * 1.6 - 0.8:.4f}, {0.414 * i % 1 * 1.6 - 0.8:.4f}]"
-        text = f"({text} | sphere(radius: {0.03 + 0.0001 * (i % 97):.4f}).translate({place}))"
+    """A tree as deep as it has operations: united and cut by turns, by solids that come again and again."""
+    text = "box(size: [1, 0.8, 0.9])"
+    for i in range(count):
+        if i % 2:
+            text = f"({text} - sphere(radius: {0.3 + 0.02 * (i % 8):.2f}).translate([{0.1 * (i % 8):.1f}, 0.4, 0.3]))"
+        else:
+            text = f"({text} | box(size: [{1.2 - 0.1 * (i % 6):.1f}, {0.2 + 0.1 * (i % 6):.1f}, 0.5]))"
     return text
 
 
@@ -103,7 +113,7 @@ FAMILIES = (
         name="deep",
         doc="Chains of a thousand operations.",
         cases=(
-            Case(name="a union of 1000 balls, two by two", text=scene(_chain(1000)), view=_CORNER),
+            Case(name="united and cut 1000 times", text=scene(_chain(1000)), view=_CORNER),
             Case(name="a box less 40 holes, one by one", text=scene(_cuts(40)), view=look((1.2, 1.0, 3.2))),
             Case(name="1000 moves", text=scene(_turns(500)), view=_CORNER),
             Case(name="1000 complements", text=scene(_complements(1000)), view=_CORNER),

@@ -1,0 +1,127 @@
+"""What a run measures: which tracers, tolerances and budgets on which scene, in groups that are timed in turn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from sdfc.api.request import RequestError
+from sdfc.measure.bench.answers import Size
+from sdfc.measure.bench.entrants import AUTO
+from sdfc.measure.bench.record import Cell
+from sdfc.tracers import TRACERS
+
+FLOOR = "floor"  # rays that are made, and not traced
+FOREIGN = "foreign"  # `foreign:FILE` is somebody's own shader
+REFERENCE = "sphere"  # what ratios are to
+TOLERANCES = (1.0, 8.0, 64.0)  # times what sdfc asks for; 64: half a pixel
+BUDGETS = (8, 16, 32, 64, 128, 256)  # Balint & Kiglics 2021, figure 6
+BUDGETED = ("jewel.sdf", "city.sdf", "blobs.sdf")  # the scenes of error against budget, where none are named
+SWEPT = ("jewel.sdf", "city.sdf")  # Keinert's kinds of scene
+HALF_PIXEL = 64.0  # the tolerance at which Keinert's rays end: a radius of half a pixel
+OMEGAS = tuple(f"relaxed:omega={1.0 + 0.1 * i:g}" if i != 2 else "relaxed" for i in range(10))  # its default is 1.2
+FORCED = ("sphere", "relaxed:force=0", "relaxed", "relaxed:force=1e+09")
+KEINERT_STEPS = 80  # his limit
+QUICK_SCENES = ("csg5.sdf", "jewel.sdf", "blobs.sdf", "lamp.sdf")
+QUICK_BUDGETS = (16, 64)
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """Parameters of a tracer, compared at one tolerance and budget."""
+
+    names: tuple[str, ...]
+    tolerance: float = 1.0
+    budget: int | None = None
+
+
+KEINERT = (
+    Sweep(OMEGAS),
+    Sweep(OMEGAS, HALF_PIXEL),
+    Sweep(FORCED, HALF_PIXEL, KEINERT_STEPS),
+)
+"""His findings: which omega is best, what his early exit saves, what the choice of a candidate saves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """A run. `budgets` are measured on the scenes `budgeted` (by file name) at tolerance 1, `sweeps` on `swept`.
+
+    `grid`: the small picture whose every ray is judged; `random`: how many rays of the timed picture are.
+    `foreign`: shaders of others, for a run of one scene.
+    """
+
+    scenes: tuple[Path, ...]
+    tracers: tuple[str, ...]
+    sizes: tuple[Size, ...] = ((640, 360),)
+    tolerances: tuple[float, ...] = TOLERANCES
+    budgets: tuple[int, ...] = ()
+    budgeted: tuple[str, ...] = ()
+    sweeps: tuple[Sweep, ...] = ()
+    swept: tuple[str, ...] = ()
+    repeat: int = 7
+    grid: Size = (160, 90)
+    random: int = 2000
+    foreign: tuple[Path, ...] = ()
+
+    def groups(self, scene: str, size: Size) -> list[Group]:
+        """What is measured of a scene at a size. A group's tracers are timed in turn, the reference among them."""
+        names = (*self.tracers, *(f"{FOREIGN}:{p.name}" for p in self.foreign))
+        made = [Group(scene, size, (*names, FLOOR), self.tolerances[0], None)]
+        made += [Group(scene, size, names, tolerance, None) for tolerance in self.tolerances[1:]]
+        if scene in self.swept:
+            made += [Group(scene, size, s.names, s.tolerance, s.budget) for s in self.sweeps]
+        if scene in self.budgeted:
+            few = tuple(name for name in self.tracers if name != AUTO)
+            made += [Group(scene, size, few, 1.0, budget) for budget in self.budgets]
+        return made
+
+    @property
+    def cells(self) -> int:
+        """How many cells there are in all."""
+        return sum(len(group.names) for p in self.scenes for size in self.sizes for group in self.groups(p.name, size))
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """For the file of results."""
+        grid, random = f"{self.grid[0]}x{self.grid[1]}", f"{self.random} random pixels of the timed size"
+        return {"truth": f"every ray at {grid}, and {random}", "rounds": f"at most {self.repeat}"}
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Cells that are timed together."""
+
+    scene: str
+    size: Size
+    names: tuple[str, ...]
+    tolerance: float
+    budget: int | None
+
+    @property
+    def reference(self) -> str:
+        """What all of the group are timed beside."""
+        return REFERENCE if REFERENCE in TRACERS else self.names[0]
+
+    def cell(self, name: str) -> Cell:
+        """The cell of one of the names."""
+        return Cell(self.scene, name, f"{self.size[0]}x{self.size[1]}", self.tolerance, self.budget)
+
+    def cells(self) -> Iterator[Cell]:
+        """All of them."""
+        return (self.cell(name) for name in self.names)
+
+
+def all_tracers() -> tuple[str, ...]:
+    """Every tracer, by its usual parameters; the reference first, the planner's choice last."""
+    return (*sorted(TRACERS, key=lambda name: (name != REFERENCE, name)), AUTO)
+
+
+def own_scenes() -> tuple[Path, ...]:
+    """The scenes of the checkout that sdfc runs from. Raises RequestError outside one."""
+    folder = Path(__file__).parents[3] / "scenes"
+    found = tuple(sorted(p for p in folder.glob("*") if p.suffix in (".sdf", ".csg")))
+    if not found:
+        raise RequestError("sdfc does not run from a checkout with scenes: name those that are to be measured")
+    return found

@@ -1,0 +1,17 @@
+"""Over-relaxation whose factor follows the field."""
+
+from sdfc.tracers.record import Parameter, Tracer
+
+ENTRY = Tracer(
+    name="auto_relaxed",
+    doc="Looks to where the next ball would touch, by a running mean of the field's slope; one plain step where not.",
+    source="Bán & Valasek 2023",
+    needs="a Lipschitz constant for every part",
+    guarantee="nothing missed; hits are early by up to the tolerance",
+    needs_map=True,
+    needs_steps=False,
+    parameters=(
+        Parameter("beta", 0.3, 0.0, 1.0, "weight of the newest slope in the mean"),
+        Parameter("force", 1.0, 0.0, 1e9, "at the limit of steps the nearest point so near is a hit, in half pixels"),
+    ),
+)

@@ -1,0 +1,17 @@
+"""Over-relaxation with a fixed factor."""
+
+from sdfc.tracers.record import Parameter, Tracer
+
+ENTRY = Tracer(
+    name="relaxed",
+    doc="Looks omega radii ahead, and takes one plain step where the two balls do not meet.",
+    source="Keinert et al. 2014, sections 3.1 and 3.2",
+    needs="a Lipschitz constant for every part",
+    guarantee="nothing missed; hits are early by up to the tolerance",
+    needs_map=True,
+    needs_steps=False,
+    parameters=(
+        Parameter("omega", 1.2, 1.0, 1.99, "radii that a step looks ahead"),
+        Parameter("force", 1.0, 0.0, 1e9, "at the limit of steps the nearest point so near is a hit, in half pixels"),
+    ),
+)

@@ -1,0 +1,3 @@
+float haste(inout float slope, float measured) { return {{ parameter.omega }}; }
+
+{% include "lib/overstep.glsl" %}
