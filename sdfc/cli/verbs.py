@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import importlib
 import sys
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import click
 
 from sdfc import __version__
-from sdfc.cli.failure import EXIT_TERMINATED, close_quietly, report
+from sdfc.cli.failure import EXIT_TERMINATED, EXIT_USAGE, close_quietly, report
 
 __all__ = ["EXIT_TERMINATED", "command"]
 
@@ -19,10 +20,15 @@ _VERBS: dict[str, tuple[str, str]] = {
     "explain": ("sdfc.cli.explain", "Say what is proved of a scene, and how it will be traced."),
     "emit-glsl": ("sdfc.cli.emit_glsl", "Write a scene as one complete GLSL shader."),
     "list": ("sdfc.cli.listing", "List primitives, operations and tracers."),
+    "bench": ("sdfc.cli.bench", "Measure time against error, of every tracer, judged by certified truth."),
     "doctor": ("sdfc.cli.doctor", "Say which OpenGL there is, what works there, what is missing."),
     "completion": ("sdfc.cli.completion", "Print the script that completes sdfc's words in a shell."),
 }
 """Each verb's module, whose `command` it is, and its line in the help: known here so that the help imports no verb."""
+
+
+_STREAM_ERRORS = frozenset({errno.ENOSPC, errno.EIO, errno.EBADF, errno.EDQUOT, errno.EFBIG})
+"""What writing to a full or broken standard output raises, without a file's name."""
 
 
 class _Verbs(click.Group):
@@ -57,6 +63,12 @@ class _Verbs(click.Group):
         except BrokenPipeError:  # the reader has had enough
             close_quietly()
             ctx.exit(0)
+        except OSError as error:
+            if error.filename is not None or error.errno not in _STREAM_ERRORS:
+                ctx.exit(report(error, as_json=bool(ctx.meta.get("sdfc.json"))))
+            click.echo(f"error: cannot write to standard output: {error.strerror}", err=True)
+            close_quietly()
+            ctx.exit(EXIT_USAGE)
         except (Exception, KeyboardInterrupt) as error:
             ctx.exit(report(error, as_json=bool(ctx.meta.get("sdfc.json"))))
         return result

@@ -15,7 +15,6 @@ from sdfc.field.graph import Expr, FieldGraph, Op, Type, params_of
 from sdfc.shape.graph import Apply, Shape
 from sdfc.shape.lower import Lowering
 
-BOXES = 512  # that are looked at for one bound, for all pieces of the params' ranges together
 _ROUNDING = 1.0 + 1e-5
 
 
@@ -41,19 +40,19 @@ class Bends:
         return self._found[key]
 
     def _bound(self, shape: Apply, region: Box) -> Expr | None:
-        from sdfc.field.bend import bend_bound
+        from sdfc.field.bend import bend_bounds
 
         graph = self._bounds.values
         lowering = _Recording(self._lipschitz, convex_shapes(shape))
         root = core_of(shape, lowering.value(shape, graph.input("p", Type(shape.dimension))))
         pieces = self._ranges.pieces(params_of([root]))
-        budget = max(16, BOXES // len(pieces))
-        bounds = [bend_bound(root, region.lo, region.hi, piece, lowering.convex, budget) for piece in pieces]
-        if not all(map(math.isfinite, bounds)):
+        whole = [self._ranges.of] if len(pieces) > 1 else []
+        bounds = bend_bounds(root, region.lo, region.hi, [*pieces, *whole], lowering.convex)
+        if not all(map(math.isfinite, bounds[: len(pieces)])):
             return None
-        if len(pieces) == 1:
+        if not whole:
             return graph.constant(bounds[0] * _ROUNDING)
-        result = bend_bound(root, region.lo, region.hi, self._ranges.of, lowering.convex, 16)
+        result = bounds.pop()
         chosen = graph.constant(result * _ROUNDING if math.isfinite(result) else 1e9)
         live = [name for name in params_of([root]) if self._ranges.of[name][0] != self._ranges.of[name][1]]
         for piece, bound in zip(pieces, bounds, strict=True):

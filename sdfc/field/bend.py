@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdfc.field import interval_rules as rules
 from sdfc.field.graph import Expr, Op
@@ -17,8 +18,7 @@ from sdfc.field.interval_rules import RULES, Array, Interval
 from sdfc.field.interval_slopes import SLOPES, Slope
 from sdfc.field.order import evaluation_order
 
-
-BOXES = 256  # how many boxes `bend_bound` looks at
+BOXES = 1024  # how many boxes `bend_bounds` looks at
 CELLS = 5  # its directions: half of a cube's faces in CELLS x CELLS cells
 AT_ONCE = 64  # boxes that are cut in one go
 
@@ -77,51 +77,91 @@ class BendEvaluator:
         return bend
 
 
-def bend_bound(
+def bend_bounds(
     root: Expr,
     lo: Sequence[float],
     hi: Sequence[float],
-    params: Mapping[str, tuple[Sequence[float], Sequence[float]]],
+    pieces: Sequence[Mapping[str, tuple[Sequence[float], Sequence[float]]]],
     convex: Mapping[int, tuple[Expr, float]],
     boxes: int = BOXES,
-) -> float:
+) -> list[float]:
     """K such that `root` (FLOAT in the VEC3 `p`) falls no faster than f + f' x - K x x / 2 along any line in the box.
 
-    Only while it is not negative: what happens inside the solid does not count. Infinite if none is found. The box is
-    cut where its bound is worst until `boxes` have been looked at.
+    One for each of `pieces`, which are ranges of the params. Only while the root is not negative: what happens inside
+    the solid does not count. Infinite if none is found. The box is cut where the bounds are worst until `boxes` have
+    been looked at, or cutting does not help.
     """
-    evaluator, cells = BendEvaluator(root, convex), _directions()
-    known = {name: _column(*pair) for name, pair in params.items()}
-    low, high = np.array(lo, float)[:, None], np.array(hi, float)[:, None]
-    bounds, seen = _box_bends(evaluator, low, high, cells, known), 1
-    while seen < boxes and bounds.max() > 0.0:
-        worst = np.argsort(bounds)[::-1][: max(1, min((boxes - seen) // 2, AT_ONCE))]
-        limit = 0.7 * bounds.max() if np.isfinite(bounds.max()) else np.inf
-        worst = worst[bounds[worst] >= limit]
-        parts = halves(low[:, worst], high[:, worst])
-        cut = np.minimum(_box_bends(evaluator, *parts, cells, known), np.tile(bounds[worst], 2))
-        seen += cut.size
-        keep = np.setdiff1d(np.arange(bounds.size), worst)
-        low, high = np.concatenate([low[:, keep], parts[0]], 1), np.concatenate([high[:, keep], parts[1]], 1)
-        bounds = np.concatenate([bounds[keep], cut])
-    return float(bounds.max())
+    search = _Search(BendEvaluator(root, convex), pieces, np.array(lo, float), np.array(hi, float))
+    first = search.worst()
+    while search.seen < boxes and search.bounds.max() > 0.0:
+        search.cut()
+        if search.seen > AT_ONCE and (np.isfinite(first) & (search.worst() > 0.98 * first)).all():
+            break
+    return [float(k) for k in search.worst()]
 
 
-def _column(lo: Sequence[float], hi: Sequence[float]) -> Interval:
-    ends = [np.asarray(end, float) for end in (lo, hi)]
-    return Interval(*(end.reshape(-1) if end.size == 1 else end.reshape(-1, 1) for end in ends))
+class _Search:
+    """Boxes of points, each for one piece of the params' ranges, and how hard the root may bend down in each."""
+
+    def __init__(
+        self,
+        evaluator: BendEvaluator,
+        pieces: Sequence[Mapping[str, tuple[Sequence[float], Sequence[float]]]],
+        lo: Array,
+        hi: Array,
+    ) -> None:
+        self._evaluator = evaluator
+        self._cells = _directions()
+        count = len(pieces)
+        self._params = {
+            name: tuple(np.stack([np.ravel(np.asarray(piece[name][end], float)) for piece in pieces]) for end in (0, 1))
+            for name in pieces[0]
+        }
+        self._lo, self._hi = (np.repeat(end[:, None], count, axis=1) for end in (lo, hi))
+        self._owner = np.arange(count)
+        self._count = count
+        self.bounds = self._bend(self._lo, self._hi, self._owner)
+        self.seen = count
+
+    def worst(self) -> Array:
+        """For each piece, (pieces,)."""
+        result = np.zeros(self._count)
+        np.maximum.at(result, self._owner, self.bounds)
+        return result
+
+    def cut(self) -> None:
+        """Halves the worst boxes of each piece."""
+        limit = 0.7 * self.worst()[self._owner]
+        bad = np.flatnonzero((self.bounds >= limit) & (self.bounds > 0.0))
+        bad = bad[np.argsort(-self.bounds[bad], kind="stable")][: max(AT_ONCE, 2 * self._count)]
+        lo, hi = halves(self._lo[:, bad], self._hi[:, bad])
+        owner = np.tile(self._owner[bad], 2)
+        fresh = np.minimum(self._bend(lo, hi, owner), np.tile(self.bounds[bad], 2))
+        keep = np.setdiff1d(np.arange(self.bounds.size), bad)
+        self._lo, self._hi = (
+            np.concatenate([old[:, keep], new], axis=1) for old, new in ((self._lo, lo), (self._hi, hi))
+        )
+        self._owner = np.concatenate([self._owner[keep], owner])
+        self.bounds = np.concatenate([self.bounds[keep], fresh])
+        self.seen += fresh.size
+
+    def _bend(self, lo: Array, hi: Array, owner: NDArray[np.int64]) -> Array:
+        each, count = self._cells.lo.shape[1], lo.shape[1]
+        box = Interval(np.repeat(lo, each, axis=1), np.repeat(hi, each, axis=1))
+        params = {
+            name: Interval(*(_rows(np.repeat(end[owner], each, axis=0)) for end in ends))
+            for name, ends in self._params.items()
+        }
+        cells = Interval(np.tile(self._cells.lo, count), np.tile(self._cells.hi, count))
+        value, bend = self._evaluator(box, cells, params)
+        down = np.where(value.hi < 0.0, 0.0, np.maximum(-bend.lo, 0.0))
+        worst: Array = np.broadcast_to(down, (each * count,)).reshape(count, each).max(axis=1)
+        return worst
 
 
-def _box_bends(
-    evaluator: BendEvaluator, lo: Array, hi: Array, cells: Interval, params: Mapping[str, Interval]
-) -> Array:
-    """How hard the root may bend down in each box, (n,)."""
-    each, count = cells.lo.shape[1], lo.shape[1]
-    box = Interval(np.repeat(lo, each, axis=1), np.repeat(hi, each, axis=1))
-    value, bend = evaluator(box, Interval(np.tile(cells.lo, count), np.tile(cells.hi, count)), params)
-    down = np.where(value.hi < 0.0, 0.0, np.maximum(-bend.lo, 0.0))
-    worst: Array = np.broadcast_to(down, (each * count,)).reshape(count, each).max(axis=1)
-    return worst
+def _rows(values: Array) -> Array:
+    """(n, k) as the evaluator has a FLOAT, (n,), or a VECk, (k, n)."""
+    return values[:, 0] if values.shape[1] == 1 else values.T
 
 
 def _directions() -> Interval:

@@ -7,7 +7,7 @@ from sdfc.field.graph import Expr, Op, topological
 _CONSTANTS = frozenset({"GROW", "CUT"})  # the templates' own, where generated calls read them
 _COSTLY = frozenset(
     {Op.SIN, Op.COS, Op.TAN, Op.ASIN, Op.ACOS, Op.ATAN, Op.ATAN2, Op.EXP, Op.LOG, Op.POW, Op.SQRT, Op.LENGTH, Op.DIV}
-    | {Op.MOD}
+    | {Op.MOD, Op.SELECT}
 )
 
 

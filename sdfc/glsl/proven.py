@@ -16,6 +16,7 @@ from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
 from sdfc.glsl.parabola import parabola_next
+from sdfc.plan.plan import FINE
 from sdfc.plan.steps import (
     All,
     Any,
@@ -48,7 +49,7 @@ class TraceText:
 
 @dataclass(frozen=True, slots=True)
 class Intervals:
-    """The ray's intervals with closed-form parts: names by part, side and skin, declared in `body` as they are asked for."""
+    """The ray's intervals with closed-form parts: names by part, side and skin, declared as they are asked for."""
 
     body: Body
     names: dict[tuple[int, Side, int], str]
@@ -178,8 +179,8 @@ class ProvenWriter:
         q = body.point(own_point(part.inverse, self._o), f"o_{part.name}")
         dq = body.point(own_direction(part.inverse, self._d), f"d_{part.name}")
         size, sign = _SIZES[side]
-        own = part.own_grow if skin is None or side is Side.WHOLE else part.own_grow * skin
-        grow = body.text(sign * own * self._graph.input(size, Type.FLOAT))
+        own = sign * part.own_grow if skin is None or side is Side.WHOLE else sign * part.own_grow * skin
+        grow = body.text(own * self._graph.input(size, Type.FLOAT))
         return body.call(self._functions.of_part(part, Role.RAY), [q, dq, grow])
 
     # marching: what has no closed form
@@ -203,7 +204,9 @@ class ProvenWriter:
         body.lines.insert(0, "    int count = 0;")
         body.add("} while (next > t && next < limit && count < MOST_STEPS);")
         body.add("unfinished = next > t && next < limit ? 1.0 : 0.0;")
-        body.add("return next > t && next >= limit ? FAR : t;")
+        # at the limit of steps a hit is what converges: nearer than the pixel is wide (Keinert 2014, section 3.2)
+        body.add(f"float near = {literal(1.0 / FINE)} * tolerance(t);")
+        body.add("return next > t && (next >= limit || next - t > near) ? FAR : t;")
         self._function(
             "float march(vec3 o, vec3 d, float start, float limit)",
             body,
@@ -335,8 +338,7 @@ class ProvenWriter:
         others = [s for s in step.steps if s not in convex]
         grown = [partial(self._convex, convex)] if convex else []
         grown += [partial(self._next, s) for s in others if is_grown(s)]
-        met = len(grown) > 1 and not scope.core
-        texts = [self._met(grown, scope)] if met else [ask(scope) for ask in grown]
+        texts = [self._met(grown, scope)] if len(grown) > 1 and not scope.core else [ask(scope) for ask in grown]
         texts += [self._next(s, scope) for s in others if not is_grown(s)]
         return self._joined("max", "far", texts, scope)
 
@@ -354,7 +356,7 @@ class ProvenWriter:
         return met
 
     def _convex(self, steps: list[Closed], scope: Scope) -> str:
-        """The convex closed-form parts of an intersection: they meet in one interval first."""
+        """The convex parts: they meet in one interval first."""
         names = [self._asked(s, scope) for s in steps]
         if scope.core or len(steps) == 1 or are_thick_together([s.part for s in steps]):
             return f"enter({_chain('both', names)}, t)"

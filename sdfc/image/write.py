@@ -54,7 +54,10 @@ def _stage(path: Path, data: bytes, temporaries: dict[Path, Path]) -> None:
     target = path.resolve()
     check_writable(target)
     if target.exists() and not target.is_file():  # /dev/null, a pipe: nothing to replace, and it must not be replaced
-        target.write_bytes(data)
+        try:
+            target.write_bytes(data)
+        except OSError as error:
+            raise OutputError(f"cannot write '{path}': {error.strerror}") from error
         return
     temporary = target.with_name(f".{target.name[:80]}.{secrets.token_hex(4)}.tmp")
     temporaries[target] = temporary

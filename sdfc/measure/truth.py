@@ -206,8 +206,10 @@ class _Question:
         frame = self.compiled.frame
         away = float(np.linalg.norm(frame.centre)) / frame.radius  # events are in the scene's written coordinates
         scale = 1.0 + away + np.abs(self.o[:, index]).max(axis=0, initial=0.0)
-        apart = np.where(both, np.maximum(events.t_lo[index] - proved.t_hi, proved.t_lo - events.t_hi[index]), -np.inf)
-        wrong = np.flatnonzero((sure & (status != proved.status)) | (apart > AGREE * scale))
+        after, before = (np.where(both, t, 0.0) for t in (events.t_lo[index] - AGREE * scale, proved.t_hi))
+        until, since = (np.where(both, t, 0.0) for t in (events.t_hi[index] + AGREE * scale, proved.t_lo))
+        apart = (after > before) | (since > until)
+        wrong = np.flatnonzero((sure & (status != proved.status)) | apart)
         if wrong.size == 0:
             return
         first = int(wrong[0])

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box, nothing
+from sdfc.facts.pointwise import is_pointwise
 from sdfc.field.graph import FieldGraph
 from sdfc.shape.graph import Affine, Apply, Shape, ShapeGraph, children_of
 from sdfc.shape.matrix import Matrix, identity, scaling, translation
@@ -60,7 +61,7 @@ def _finite_parts(root: Shape, bounds: Bounds) -> Box:
         match shape:
             case Affine():
                 stack.append((shape.child, forward.after(shape.forward)))
-            case Apply():
+            case Apply() if not is_pointwise(shape, bounds.values):
                 pass  # an operation may move its children anywhere
             case _:
                 stack.extend((c, forward) for c in children_of(shape))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sdfc.facts.bend import core_of
 from sdfc.field.derivative import directional, gradient
 from sdfc.field.function import Function
 from sdfc.field.graph import Expr, FieldGraph, Type
@@ -122,6 +123,25 @@ class Formulas:
         value, along = self._evaluate("slope", own.owner, roots, inputs, own.arguments)
         shape = p.shape[1:]
         return np.broadcast_to(value, shape) * own.stretch, np.broadcast_to(along, shape) * own.stretch
+
+    def parabola(self, part: Part, p: Array, d: Array) -> tuple[Array, Array, Array]:
+        """The part's formula, its core (sdfc/facts/bend), and the core's derivative along d, (n,) each."""
+        own = self._own(part)
+
+        def roots() -> list[Expr]:
+            value = self._formula(part, own)
+            core = core_of(part.shape, value)
+            return [value, core, directional(core, {self._p: self._d})]
+
+        inputs = {"p": own.point(p), "d": own.direction(d)}
+        found = self._evaluate("parabola", own.owner, roots, inputs, own.arguments)
+        value, core, along = (np.broadcast_to(a, p.shape[1:]) * own.stretch for a in found)
+        return value, core, along
+
+    def bend(self, part: Part, bend: Expr) -> float:
+        """The bend of a part's core along the scene's rays, from the one in its own space."""
+        own = self._own(part)
+        return float(self.constant(bend)[0]) * own.grow * own.grow * own.stretch
 
     def surface(self, part: Part, p: Array, formula: bool = False) -> Array:
         """Gradient and value, (4, n), of a function whose zero set is the surface; of the formula itself if asked."""

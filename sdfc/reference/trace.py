@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdfc.facts.box import Box, everything, nothing
+from sdfc.field.graph import Expr
 from sdfc.plan.plan import FINE, Plan
 from sdfc.plan.steps import (
     All,
@@ -123,6 +124,9 @@ class StepTracer:
             here = _Place(here.rays.take(going), answer[going], here.index[going])
         if closed:
             t[here.index] = FAR  # not one solid thicker than rounding in all these events
+        elif here.index.size:  # at the limit of steps a hit is what converges: nearer than the pixel is wide
+            ahead = self._next(member, walk, here, _Mode()) - here.t
+            t[here.index[ahead > here.rays.half_pixel(here.t)]] = FAR
         return np.where(t < limit, t, FAR), counts
 
     def _walk(self, member: Step, rays: Rays) -> _Walk:
@@ -251,12 +255,26 @@ class StepTracer:
     def _ball(self, step: Ball, here: _Place, cut: bool) -> Array:
         """The empty ball around the point."""
         near = finest(here.t) if cut else self.tolerance(here.rays, here.t)
+        if step.bend is not None:
+            return self._parabola(step, step.bend, here, cut, near)
         radius = self._formulas.value(step.part, here.rays.at(here.t)) / max(step.lipschitz, 1e-9)
         if not step.inside:  # a hit on what is cut away lies inside it, by more than its own tolerance
             radius = 3.0 * near - radius
         elif cut:
             radius = radius + 3.0 * near
         return np.where(radius <= near, here.t, here.t + radius * SHY)
+
+    def _parabola(self, step: Ball, known: Expr, here: _Place, cut: bool, near: Array) -> Array:
+        """To the root of the parabola below the field's core, or by the empty ball where that is more."""
+        bend = max(self._formulas.bend(step.part, known), 1e-6)
+        value, core, slope = self._formulas.parabola(step.part, here.rays.at(here.t), here.rays.d)
+        radius = value / max(step.lipschitz, 1e-9) + (3.0 * near if cut else 0.0)
+        above = np.maximum(core, 0.0) * (1.0 - 0.5 * near / np.maximum(radius, near))
+        fall = 1e-12 - slope
+        root = np.sqrt(fall * fall + 2.0 * bend * above)
+        falling = fall > 0.0
+        clear = np.where(falling, 2.0 * above / np.where(falling, fall + root, 1.0), (root - fall) / bend)
+        return np.where(radius <= near, here.t, here.t + np.maximum(radius, clear) * SHY)
 
     def _blend(self, step: Blend, here: _Place, cut: bool) -> Array:
         """A smooth union by empty balls: slower than by the lines below its operands, and as safe."""

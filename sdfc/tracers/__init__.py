@@ -38,6 +38,8 @@ def choice(spec: str) -> Choice:
             values[key] = float(text)
         except ValueError:
             raise ValueError(f"'{text}' is no number (parameter '{key}' of tracer '{name}')") from None
+        if known[key].is_whole and not values[key].is_integer():
+            raise ValueError(f"parameter '{key}' of tracer '{name}' is a whole number, not {text}")
         if not known[key].low <= values[key] <= known[key].high:
             raise ValueError(
                 f"parameter '{key}' of tracer '{name}' is from {known[key].low:g} to {known[key].high:g}, not {text}"

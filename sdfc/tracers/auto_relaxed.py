@@ -1,6 +1,6 @@
 """Over-relaxation whose factor follows the field."""
 
-from sdfc.tracers.record import Parameter, Tracer
+from sdfc.tracers.record import FORCE, REDUCE, Parameter, Tracer
 
 ENTRY = Tracer(
     name="auto_relaxed",
@@ -12,6 +12,7 @@ ENTRY = Tracer(
     needs_steps=False,
     parameters=(
         Parameter("beta", 0.3, 0.0, 1.0, "weight of the newest slope in the mean"),
-        Parameter("force", 1.0, 0.0, 1e9, "at the limit of steps the nearest point so near is a hit, in half pixels"),
+        FORCE,
+        REDUCE,
     ),
 )

@@ -1,6 +1,6 @@
 """Steps for a field that is linear along the ray."""
 
-from sdfc.tracers.record import Parameter, Tracer
+from sdfc.tracers.record import FORCE, REDUCE, Parameter, Tracer
 
 ENTRY = Tracer(
     name="enhanced",
@@ -12,6 +12,7 @@ ENTRY = Tracer(
     needs_steps=False,
     parameters=(
         Parameter("omega", 0.95, 0.0, 1.0, "share of the way beyond the ball that is looked ahead"),
-        Parameter("force", 1.0, 0.0, 1e9, "at the limit of steps the nearest point so near is a hit, in half pixels"),
+        FORCE,
+        REDUCE,
     ),
 )

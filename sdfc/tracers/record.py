@@ -15,6 +15,13 @@ class Parameter:
     low: float
     high: float
     doc: str
+    is_whole: bool = False  # whether it must be a whole number
+
+
+FORCE = Parameter("force", 1.0, 0.0, 1e9, "given up, a ray hits where it came nearest, if so near: in half pixels")
+REDUCE = Parameter(
+    "reduce", 0.0, 0.0, 2.0, "hits are moved to where the field is the tolerance: 1 a Newton step, 2 three passes", True
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,6 +1,6 @@
 """Over-relaxation with a fixed factor."""
 
-from sdfc.tracers.record import Parameter, Tracer
+from sdfc.tracers.record import FORCE, REDUCE, Parameter, Tracer
 
 ENTRY = Tracer(
     name="relaxed",
@@ -12,6 +12,7 @@ ENTRY = Tracer(
     needs_steps=False,
     parameters=(
         Parameter("omega", 1.2, 1.0, 1.99, "radii that a step looks ahead"),
-        Parameter("force", 1.0, 0.0, 1e9, "at the limit of steps the nearest point so near is a hit, in half pixels"),
+        FORCE,
+        REDUCE,
     ),
 )

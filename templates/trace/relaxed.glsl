@@ -1,3 +1,6 @@
-float haste(inout float slope, float measured) { return {{ parameter.omega }}; }
+float haste(inout float slope, float measured) {
+    slope = measured;
+    return {{ parameter.omega }};
+}
 
 {% include "lib/overstep.glsl" %}

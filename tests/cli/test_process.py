@@ -95,3 +95,21 @@ def test_completion_completes_verbs_and_options(scene: Path) -> None:
     script = "from sdfc.cli import main; main()"
     done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, timeout=60)
     assert done.stdout.split() == ["plain,emit-glsl"]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full here")
+@pytest.mark.parametrize("arguments", [["list"], ["emit-glsl", "s.sdf"], ["emit-glsl", "s.sdf", "-o", "/dev/full"]])
+def test_a_full_disk_is_an_error_and_no_bug(arguments: list[str], tmp_path: Path) -> None:
+    (tmp_path / "s.sdf").write_text("scene { sphere(radius: 1) }")
+    with open("/dev/full", "wb") as full:
+        result = subprocess.run(
+            [sys.executable, "-m", "sdfc", *arguments], stdout=full, stderr=subprocess.PIPE, cwd=tmp_path, text=True
+        )
+    assert result.returncode == 2
+    assert "No space left on device" in result.stderr and "bug" not in result.stderr and "None" not in result.stderr
+
+
+def test_a_closed_standard_output_is_no_bug(tmp_path: Path) -> None:
+    command = f"{sys.executable} -m sdfc list tracers >&-"
+    result = subprocess.run(["sh", "-c", command], stderr=subprocess.PIPE, cwd=tmp_path, text=True)
+    assert (result.returncode, result.stderr) == (0, "")

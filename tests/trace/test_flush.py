@@ -128,6 +128,7 @@ PAIRS = [
         f"({LONG} - {SIDE_ON.format(x=0.75)}) - {SIDE_ON.format(x=-0.75)}",
         "",
     ),
+    Pair("a stretched part less the box around it", f"{LONG} - box(size: [2, 0.5, 0.4])", ""),
     Pair(
         "halves of a stretched part",
         f"({LONG} & {SIDE_ON.format(x=0.75)}) | ({LONG} & {SIDE_ON.format(x=-0.75)})",

@@ -140,6 +140,6 @@ def test_what_draws_chooses_the_closed_forms(tracing: Tracing) -> None:
     with program:
         images = [program.render((80, 50), backend=backend, aovs=["depth"]).aovs["depth"] for backend in ("cpu", "gl")]
     hits = [np.isfinite(depth) for depth in images]
-    assert (hits[0] != hits[1]).sum() <= 2 and hits[0].sum() > 500  # of the edge's pixels
+    assert (hits[0] != hits[1]).sum() <= 2 and hits[0].sum() > 400  # at the edge
     off = np.abs(images[0] - images[1])[hits[0] & hits[1]]
     assert np.quantile(off, 0.98) < 1e-4

@@ -77,7 +77,7 @@ def random_pixels(size: Size, count: int) -> Index:
 
 
 def covered(image: NDArray[Any]) -> Answers | None:
-    """From a colour image whose alpha says what was hit; None where it says the same of every pixel: it says nothing."""
+    """From a colour image whose alpha says what was hit; None where it says the same of every pixel, so nothing."""
     hit = image.reshape(-1, 4)[:, 3] > 0.5
     nothing = np.zeros(hit.size)
     if hit.all() or not hit.any():

@@ -161,7 +161,7 @@ class Competition:
             return None
         with legal.drawing(self.wanted.grid, group.tolerance, "probe", 4) as drawing:
             drawing.draw()
-            image = drawing.read(1)[..., :3].astype(np.float64)
+            image: Array = drawing.read(1)[..., :3].astype(np.float64)
         return np.moveaxis(image, -1, 0).reshape(3, -1)
 
     def _court(self, name: str) -> Court:

@@ -157,7 +157,7 @@ def entrant(scene: Scene, spec: str, budget: int | None, renderer: GlRenderer) -
 
 
 def asked(scene: Scene, spec: str, renderer: GlRenderer) -> tuple[Options, str]:
-    """The compiler's options for a spec, and what is to be said of it: `relaxed:omega=1.4`, `sphere+prepass`, `auto`."""
+    """The compiler's options for a spec (`relaxed:omega=1.4`, `sphere+prepass`, `auto`), and a remark."""
     name, *extras = _EXTRA.split(spec)
     if name == AUTO:
         from sdfc.api.choose import decide, options_of

@@ -115,18 +115,22 @@ def foreign(name: str, path: Path, compiled: Compiled, device: Device) -> Foreig
 
 def _marched(text: str, compiled: Compiled) -> str:
     plan = compiled.plan
-    return _environment().get_template("bench/map.frag").render(
-        version=VERSION,
-        text=text,
-        taken=TAKEN,
-        most_steps=MOST_STEPS,
-        radius=literal(plan.radius),
-        centre=f"vec3({', '.join(literal(c) for c in plan.centre)})",
-        far=literal(FAR),
-        smallest=literal(SMALLEST_TOLERANCE),
-        fine=literal(FINE),
-        finite=plan.is_finite,
-        horizon=literal(HORIZON),
+    return (
+        _environment()
+        .get_template("bench/map.frag")
+        .render(
+            version=VERSION,
+            text=text,
+            taken=TAKEN,
+            most_steps=MOST_STEPS,
+            radius=literal(plan.radius),
+            centre=f"vec3({', '.join(literal(c) for c in plan.centre)})",
+            far=literal(FAR),
+            smallest=literal(SMALLEST_TOLERANCE),
+            fine=literal(FINE),
+            finite=plan.is_finite,
+            horizon=literal(HORIZON),
+        )
     )
 
 

@@ -20,10 +20,11 @@ BUDGETS = (8, 16, 32, 64, 128, 256)  # Balint & Kiglics 2021, figure 6
 BUDGETED = ("jewel.sdf", "city.sdf", "blobs.sdf")  # the scenes of error against budget, where none are named
 SWEPT = ("jewel.sdf", "city.sdf")  # Keinert's kinds of scene
 HALF_PIXEL = 64.0  # the tolerance at which Keinert's rays end: a radius of half a pixel
-OMEGAS = tuple(f"relaxed:omega={1.0 + 0.1 * i:g}" if i != 2 else "relaxed" for i in range(10))  # its default is 1.2
+OMEGAS = {"relaxed" if i == 2 else f"relaxed:omega={1.0 + 0.1 * i:g}": 1.0 + 0.1 * i for i in range(10)}
+"""The omega of each tracer that is compared with others of its kind; the default is 1.2, Keinert's choice."""
 FORCED = ("sphere", "relaxed:force=0", "relaxed", "relaxed:force=1e+09")
 KEINERT_STEPS = 80  # his limit
-QUICK_SCENES = ("csg5.sdf", "jewel.sdf", "blobs.sdf", "lamp.sdf")
+QUICK = ("csg5.sdf", "jewel.sdf", "blobs.sdf", "lamp.sdf")
 QUICK_BUDGETS = (16, 64)
 
 
@@ -37,8 +38,8 @@ class Sweep:
 
 
 KEINERT = (
-    Sweep(OMEGAS),
-    Sweep(OMEGAS, HALF_PIXEL),
+    Sweep(tuple(OMEGAS)),
+    Sweep(tuple(OMEGAS), HALF_PIXEL),
     Sweep(FORCED, HALF_PIXEL, KEINERT_STEPS),
 )
 """His findings: which omega is best, what his early exit saves, what the choice of a candidate saves."""
@@ -118,10 +119,33 @@ def all_tracers() -> tuple[str, ...]:
     return (*sorted(TRACERS, key=lambda name: (name != REFERENCE, name)), AUTO)
 
 
-def own_scenes() -> tuple[Path, ...]:
-    """The scenes of the checkout that sdfc runs from. Raises RequestError outside one."""
-    folder = Path(__file__).parents[3] / "scenes"
-    found = tuple(sorted(p for p in folder.glob("*") if p.suffix in (".sdf", ".csg")))
-    if not found:
-        raise RequestError("sdfc does not run from a checkout with scenes: name those that are to be measured")
-    return found
+def full() -> Wanted:
+    """The run of the repository's results, as it is without scenes."""
+    return Wanted((), all_tracers(), budgets=BUDGETS, budgeted=BUDGETED, sweeps=KEINERT, swept=SWEPT)
+
+
+def quick() -> Wanted:
+    """A minute's."""
+    return Wanted(
+        (),
+        all_tracers(),
+        sizes=((320, 180),),
+        tolerances=(1.0,),
+        budgets=QUICK_BUDGETS,
+        budgeted=BUDGETED[:1],
+        repeat=3,
+        grid=(80, 45),
+        random=500,
+    )
+
+
+def usual_scenes(only: tuple[str, ...] = ()) -> tuple[Path, ...]:
+    """The scenes of the folder `scenes` here, or of the checkout that sdfc runs from; those of these names.
+
+    Raises RequestError where there is neither.
+    """
+    for folder in (Path("scenes"), Path(__file__).parents[3] / "scenes"):
+        found = sorted(p for p in folder.glob("*") if p.suffix in (".sdf", ".csg") and (not only or p.name in only))
+        if found:
+            return tuple(found)
+    raise RequestError("there is no folder 'scenes' here, nor does sdfc run from a checkout: name the scenes")

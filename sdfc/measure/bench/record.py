@@ -155,7 +155,7 @@ class Record:
     def from_json(cls, given: Json) -> Record:
         """The inverse of `to_json`."""
         errors = {name: _errors(values) for name, values in given["errors"].items()}
-        parts = {
+        parts: Json = {
             name: None if given[name] is None else kind(**_numbers(given[name]))
             for name, kind in (("timing", Timing), ("building", Building), ("work", Work))
         }
@@ -167,7 +167,7 @@ _SPREADS = ("pixels", "ulps", "residual", "normals")
 
 
 def _errors(given: Json) -> Errors:
-    spreads = {name: Spread(**_numbers(given[name])) for name in _SPREADS}
+    spreads: Json = {name: Spread(**_numbers(given[name])) for name in _SPREADS}
     return Errors(**_numbers({n: v for n, v in given.items() if n not in _SPREADS}), **spreads)
 
 

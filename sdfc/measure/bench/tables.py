@@ -10,12 +10,12 @@ from sdfc.measure.bench.record import Cell, Record, Spread
 from sdfc.measure.bench.store import Store, ordered
 
 LEGEND = f"""\
-`ms`: median of the frames, drawn in turn with those of the other tracers, in brackets the quartiles. `x`: how many times
-as fast as `{REFERENCE}` in the same rounds. `evals`, `steps`: values of the whole scene and passes of a ray's loops, a
-pixel. `wrong`: uncontested rays missed + hit falsely + answered before + behind where they may be, of all that were
-judged (the window is that of tolerance 1). `cont.`: contested rays answered otherwise than certified. `pixels`: |t - t*|
-in footprints of a pixel, median / 99th percentile / most. `normal`: degrees, 99th percentile off creases. `stalls`:
-rays given up. `ready`: milliseconds from the scene's graph to machine code."""
+`ms`: median of the frames, drawn in turn with those of the other tracers, in brackets the quartiles. `x`: how many
+times as fast as `{REFERENCE}` in the same rounds. `evals`, `steps`: values of the whole scene and passes of a ray's
+loops, a pixel; `p99` of the steps. `wrong`: uncontested rays missed + hit falsely + answered before + behind where they
+may be + not a number (what may be is that of tolerance 1). `cont.`: contested rays answered otherwise than certified.
+`pixels`: |t - t*| in footprints of a pixel, median / 99th percentile / most. `normal`: degrees, 99th percentile off
+creases. `stalls`: uncontested rays given up. `ready`: milliseconds from the scene to machine code."""
 
 _HEAD = ("tracer", "ms", "x", "evals", "steps", "p99", "wrong", "cont.", "pixels", "normal", "stalls", "ready")
 
@@ -91,7 +91,10 @@ def comparison(before: Store, after: Store) -> tuple[str, bool]:
     lost = [c for c in both if before.records[c].illegal is None and after.records[c].illegal is not None]
     head = ("cell", "ms before", "ms after", "ratio", "p99 before", "p99 after", "wrong before", "wrong after")
     ratios = [_ratio(before.records[c], after.records[c]) for c in measured]
-    parts = [table(head, rows), f"{len(measured)} cells in both; time after / before, geometric mean: {number(geometric_mean(ratios))}"]
+    parts = [
+        table(head, rows),
+        f"{len(measured)} cells in both; time after / before, geometric mean: {number(geometric_mean(ratios))}",
+    ]
     parts += [f"{len(before.records) - len(both)} cells only before, {len(after.records) - len(both)} only after"]
     parts += [f"worse: {c}: {before.records[c].wrong} -> {after.records[c].wrong} wrong" for c in _sorted(worse)]
     parts += [f"no longer legal: {c}" for c in _sorted(lost)]
@@ -111,4 +114,3 @@ def _compared(cell: Cell, before: Record, after: Record) -> Sequence[str]:
     assert before.timing is not None and after.timing is not None
     times = (number(before.timing.median), number(after.timing.median), number(_ratio(before, after)))
     return (str(cell), *times, number(before.p99, 2), number(after.p99, 2), str(before.wrong), str(after.wrong))
-

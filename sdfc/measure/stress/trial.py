@@ -9,6 +9,7 @@ from typing import TypeAlias, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from sdfc import pipeline
 from sdfc.measure.judge import footprint
 from sdfc.measure.picture import Picture, Tracing
 from sdfc.measure.stress.record import Case
@@ -29,8 +30,8 @@ ROWS = 720  # pictures are small, but judged as finely as one of so many rows
 class Trial:
     """What was answered in one case; rays flat, rows from the top.
 
-    `truth` is of these rays. `kinds`: for each way to break the guarantee, the rays that do. `pixel`: half of one, where
-    the ray hit.
+    `truth` is of these rays. `kinds`: for each way to break the guarantee, the rays that do. `pixel`: half of one,
+    where the ray hit.
     """
 
     case: Case
@@ -77,6 +78,7 @@ class _Drawn:
     pixel: Array  # half of one
 
 
+@pipeline.deep_recursion()
 def tried(tracing: Tracing, compiled: Compiled, cases: Sequence[Case], size: tuple[int, int]) -> list[Trial]:
     """Cases of one scene, drawn and judged: all rays together, for a proof of many rays at once is cheap."""
     groups: dict[str, list[_Drawn]] = {}

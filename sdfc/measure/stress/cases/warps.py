@@ -44,7 +44,15 @@ def _warped(name: str, solid: str) -> tuple[Case, ...]:
     )
 
 
-def _chain(count: int) -> str:
+def _union(count: int) -> str:
+    """Each union within the next one, of balls that come again and again."""
+    text = "box(size: [1, 0.8, 0.9])"
+    for i in range(count):
+        text = f"({text} | sphere(radius: {0.3 + 0.02 * (i % 8):.2f}).translate([{0.1 * (i % 8):.1f}, 0.4, 0.3]))"
+    return text
+
+
+def _by_turns(count: int) -> str:
     """A tree as deep as it has operations: united and cut by turns, by solids that come again and again."""
     text = "box(size: [1, 0.8, 0.9])"
     for i in range(count):
@@ -113,7 +121,8 @@ FAMILIES = (
         name="deep",
         doc="Chains of a thousand operations.",
         cases=(
-            Case(name="united and cut 1000 times", text=scene(_chain(1000)), view=_CORNER),
+            Case(name="united 1000 times", text=scene(_union(1000)), view=_CORNER),
+            Case(name="united and cut 300 times by turns", text=scene(_by_turns(300)), view=_CORNER),
             Case(name="a box less 40 holes, one by one", text=scene(_cuts(40)), view=look((1.2, 1.0, 3.2))),
             Case(name="1000 moves", text=scene(_turns(500)), view=_CORNER),
             Case(name="1000 complements", text=scene(_complements(1000)), view=_CORNER),
