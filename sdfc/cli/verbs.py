@@ -21,6 +21,7 @@ _VERBS: dict[str, tuple[str, str]] = {
     "emit-glsl": ("sdfc.cli.emit_glsl", "Write a scene as one complete GLSL shader."),
     "list": ("sdfc.cli.listing", "List primitives, operations and tracers."),
     "bench": ("sdfc.cli.bench", "Measure time against error, of every tracer, judged by certified truth."),
+    "stress": ("sdfc.cli.stress", "Trace what is numerically hard, and judge it by certified truth."),
     "doctor": ("sdfc.cli.doctor", "Say which OpenGL there is, what works there, what is missing."),
     "completion": ("sdfc.cli.completion", "Print the script that completes sdfc's words in a shell."),
 }

@@ -19,6 +19,7 @@ from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
 from sdfc.glsl.names import identifier, param_name
 from sdfc.glsl.proven import ProvenWriter, TraceText
+from sdfc.glsl.span import SpanWriter
 from sdfc.glsl.surface import SurfaceWriter
 from sdfc.plan.plan import CUT, FINE, GROW, HORIZON, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, TILE, Plan
 from sdfc.plan.setting import Setting
@@ -107,6 +108,8 @@ class _Assembly:
         has_map = traced or self._lit
         distance = DistanceWriter(self._graph, self._functions, self._live, plan.slopes, many, traced)
         map_text = distance.write(plan.swept if self._is_cone else plan.root) if has_map else ""
+        spans = SpanWriter(self._graph, self._functions, self._live, plan.slopes, many)
+        span_text = spans.write(plan.root) if tracer.needs_span and not self._is_cone else ""
         recorded = many if tracer.needs_steps else None
         surfaces = SurfaceWriter(self._graph, self._functions, self._live, plan.materials, recorded)
         surface = surfaces.write(plan.root) if self._has_surface else None
@@ -128,6 +131,7 @@ class _Assembly:
             "needs_marching": trace.march or (tracer.needs_map and not self._is_cone) or bool(many.tables),
             "needs_map_library": "within(" in map_text or "box_distance" in map_text,
             "map": map_text,
+            "map_span": span_text,
             "tables": "\n".join(many.tables),
             "trace": trace,
             "tracer_template": "" if self._is_cone else tracer.template,

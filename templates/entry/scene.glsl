@@ -56,6 +56,11 @@ void prepare() {
 {% if map %}
 {{ map }}
 {% endif %}
+{% if map_span %}
+{% include "lib/span.glsl" %}
+
+{{ map_span }}
+{% endif %}
 {{ trace.functions }}
 {% if tracer_template %}
 {% include tracer_template %}

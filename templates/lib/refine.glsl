@@ -20,15 +20,21 @@ float look(Bracket b) {
     return mix(b.outer, b.inner, clamp(share, 0.0, 1.0));
 }
 
-void narrow(inout Bracket b, float t, float value) {
-    bool is_outer = value > 0.0, is_third = b.looks >= 2.0;
-    float fall = 1.0 - value / (is_outer ? b.above : min(b.below, -1e-30));
-    float weight = (is_outer ? 1.0 : -1.0) != b.moved ? 1.0 : fall > 0.0 ? fall : 0.5;
-    b.outer = is_outer ? t : b.outer;
-    b.inner = is_outer ? b.inner : t;
-    b.above = is_outer ? value : b.above * weight;
-    b.below = is_outer ? b.below * weight : value;
-    b.moved = is_outer ? 1.0 : -1.0;
-    b.looks = !is_third ? max(b.looks, 0.0) + 1.0 : b.inner - b.outer > 0.5 * b.width ? -1.0 : 0.0;
-    b.width = is_third ? b.inner - b.outer : b.width;
+// the bracket after a look at t
+Bracket narrowed(Bracket b, float t, float value) {
+    bool is_outer = value > 0.0, is_third = b.looks >= 2.0, is_slow = b.inner - b.outer > 0.5 * b.width;
+    float moved = is_outer ? 1.0 : -1.0, fall = 1.0 - value / (is_outer ? b.above : min(b.below, -1e-30));
+{% if plain %}
+    float weight = 1.0;
+{% else %}
+    float weight = moved != b.moved ? 1.0 : fall > 0.0 ? fall : 0.5;
+{% endif %}
+    vec2 ends = is_outer ? vec2(t, b.inner) : vec2(b.outer, t);
+    vec2 values = is_outer ? vec2(value, b.below * weight) : vec2(b.above * weight, value);
+{% if plain %}
+    float looks = 0.0;
+{% else %}
+    float looks = !is_third ? max(b.looks, 0.0) + 1.0 : is_slow ? -1.0 : 0.0;
+{% endif %}
+    return Bracket(ends.x, values.x, ends.y, values.y, is_third ? ends.y - ends.x : b.width, looks, moved);
 }

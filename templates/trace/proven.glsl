@@ -7,7 +7,10 @@ float trace(vec3 o, vec3 d, float start, float limit) {
     float first = FAR;
 {% endif %}
 {% if trace.march %}
-    first = min(first, march(o, d, {{ "max(start, cleared)" if prepass else "start" }}, min(first, limit)));
+{% if not finite %}
+    // the scene has no end: nothing is marched to beyond its horizon
+{% endif %}
+    first = min(first, march(o, d, {{ "max(start, cleared)" if prepass else "start" }}, min(first, {{ 'limit' if finite else 'min(limit, ' ~ horizon ~ ')' }})));
 {% endif %}
     return first < limit ? first : FAR;
 }

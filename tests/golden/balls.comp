@@ -205,7 +205,8 @@ float march(vec3 o, vec3 d, float start, float limit) {
         count += 1;
     } while (next > t && next < limit && count < MOST_STEPS);
     unfinished = next > t && next < limit ? 1.0 : 0.0;
-    return next > t && next >= limit ? FAR : t;
+    float near = 64.0 * tolerance(t);
+    return next > t && (next >= limit || next - t > near) ? FAR : t;
 }
 
 // requires: events or march (generated)

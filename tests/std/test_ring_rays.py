@@ -50,7 +50,8 @@ def _error(o: Array, d: Array, major: float, minor: float, generator: np.random.
 
 def _directions(generator: np.random.Generator) -> Array:
     d: Array = generator.normal(size=(3, _COUNT))
-    return d / np.linalg.norm(d, axis=0)
+    d /= np.linalg.norm(d, axis=0)
+    return d
 
 
 @pytest.mark.parametrize("ratio", _RATIOS)

@@ -25,7 +25,7 @@ FLOORS = {
 @pytest.mark.parametrize("floor", list(FLOORS))
 def test_nothing_is_above_the_horizon(floor: str, tracing: Tracing) -> None:
     picture = tracing.picture(compiled_text(f"scene {{ {FLOORS[floor]} }}"), SIZE, VIEW)
-    above = picture.d[1] > 1e-4
+    above = picture.d[1] > 1e-4  # radians
     assert above.sum() > 500
     assert not (picture.hit & above & (picture.depth > 50.0)).any()
     steep = picture.d[1] < -0.02

@@ -1,0 +1,154 @@
+"""docs/benchmarks.md: what a run found, in words and tables, made from its file of results and nothing else."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from sdfc.measure.bench import findings
+from sdfc.measure.bench.markdown import geometric_mean, number, table
+from sdfc.measure.bench.plan import REFERENCE
+from sdfc.measure.bench.results import PUBLISHED, Results, Row, speed_up
+from sdfc.measure.bench.store import Store
+from sdfc.measure.bench.tables import LEGEND, machine
+
+_PLOTS = (
+    ("time-error.png", "Time against p99 error of every tracer at every tolerance; the grey line is the Pareto front."),
+    ("ratios.png", "How many times as fast as `sphere`, by scene."),
+)
+
+
+def report(store: Store, folder: Path, page: Path | None) -> str:
+    """The page, with links as they are from where it is kept (None: from the folder of the results)."""
+    results = Results(store)
+    where = Path(os.path.relpath(folder, page.parent if page is not None else folder))
+    parts = [*_opening(store, folder), *_times(results), *_errors(results), *_worst(results), *_planner(results)]
+    parts += [*findings.budgets(results), *findings.keinert(results)]
+    pictures = [*_PLOTS, *findings.PLOTS, *((p.name, p.name) for p in sorted(folder.glob("*.steps.png")))]
+    shown = [f"![{text}]({(where / name).as_posix()})" for name, text in pictures if (folder / name).exists()]
+    return "\n\n".join([*parts, *(["## Pictures", *shown] if shown else [])]) + "\n"
+
+
+def _opening(store: Store, folder: Path) -> Iterator[str]:
+    command = f"sdfc bench --report {folder.as_posix()} -o docs/benchmarks.md"
+    yield f"<!-- made by: {command} -->"
+    yield "# Benchmarks"
+    yield (
+        f"Made from [{folder.name}]({'../' + folder.as_posix()}/results.json) by `{command}`; the numbers are those of "
+        "`sdfc bench` without arguments. Times are of primary rays only (a depth image), at the tolerance that sdfc "
+        "asks for: a 64th of half a pixel, or 16 roundings. Errors are against certified truth."
+    )
+    yield machine(store)
+    yield LEGEND
+
+
+def _times(results: Results) -> Iterator[str]:
+    """The ratios that the project is held to."""
+    yield "## Time at no larger error"
+    ours = results.ours
+    yield (
+        f"`{ours}` beside `{REFERENCE}` and the fastest published tracer ({', '.join(f'`{n}`' for n in PUBLISHED)}), "
+        "all at tolerance 1. A ratio is given where ours has no larger p99 error (by 2 %) and no more wrong rays; "
+        "ours may then be at the coarsest of its tolerances for which that holds."
+    )
+    rows, of_reference, of_published = [], [], []
+    for row in results.rows:
+        first, best, mine = row.at(REFERENCE), row.best(PUBLISHED), row.at(ours)
+        ratios = speed_up(row, first, ours), speed_up(row, best, ours)
+        of_reference.append(ratios[0])
+        of_published.append(ratios[1])
+        rows.append(
+            (
+                row.name,
+                *(number(r.timing.median) if r is not None and r.timing else "-" for r in (first, best, mine)),
+                "-" if best is None else f"`{best.cell.tracer}`",
+                *map(number, ratios),
+                *(number(r.p99, 2) if r is not None else "-" for r in (first, best, mine)),
+                *(str(r.wrong) if r is not None else "-" for r in (first, best, mine)),
+            )
+        )
+    means = (number(geometric_mean(of_reference)), number(geometric_mean(of_published)))
+    rows.append(("**geometric mean**", "", "", "", "", *means))
+    head = ("scene", f"{REFERENCE} ms", "best ms", f"{ours} ms", "best", f"{REFERENCE} / {ours}", f"best / {ours}")
+    yield table((*head, f"p99 {REFERENCE}", "p99 best", f"p99 {ours}", "wrong", "wrong best", f"wrong {ours}"), rows)
+    yield f"Ratios could be given on {_given(of_reference)} and {_given(of_published)} of {len(results.rows)} scenes."
+
+
+def _given(ratios: Sequence[float]) -> int:
+    return sum(r == r for r in ratios)
+
+
+def _errors(results: Results) -> Iterator[str]:
+    """What is wrong, by tracer, over all scenes."""
+    yield "## Errors at tolerance 1, over all scenes"
+    rows = []
+    for name in results.tracers:
+        found = [(row, r) for row in results.rows if (r := row.at(name)) is not None and r.errors]
+        if not found:
+            continue
+        sums = [
+            sum(getattr(e, kind) for _, r in found for e in r.errors.values())
+            for kind in ("rays", "missed", "false", "early", "late", "not_finite", "stalls", "contested_wrong")
+        ]
+        p99 = max(found, key=lambda f: _or_zero(f[1].p99))
+        most = max(found, key=lambda f: _or_zero(f[1].errors["grid"].pixels.maximum))
+        normal = max(_or_zero(r.errors["grid"].normals.p99) for _, r in found)
+        rows.append(
+            (
+                f"`{name}`",
+                str(len(found)),
+                *map(str, sums),
+                f"{number(p99[1].p99, 2)} ({p99[0].name})",
+                f"{number(most[1].errors['grid'].pixels.maximum, 2)} ({most[0].name})",
+                number(normal, 2),
+            )
+        )
+    head = ("tracer", "scenes", "rays", "missed", "false", "early", "late", "NaN", "stalls", "contested wrong")
+    yield table((*head, "worst p99, pixels", "worst, pixels", "worst p99 of normals, degrees"), rows)
+    refused = [f"- `{name}` on {row.name}: {why}" for row in results.rows for name, why in row.illegal.items()]
+    if refused:
+        yield "Not legal:\n\n" + "\n".join(refused)
+
+
+def _or_zero(value: float) -> float:
+    return value if value == value else 0.0
+
+
+def _worst(results: Results) -> Iterator[str]:
+    """The worst of each kind, of ours."""
+    ours = results.ours
+    found = [(row, r) for row in results.rows if (r := row.at(ours)) is not None and r.errors and r.timing and r.work]
+    if not found:
+        return
+    yield f"## Worst cases of `{ours}`"
+    slowest = min(found, key=lambda f: f[1].timing.reference / f[1].timing.median if f[1].timing else 0.0)
+    lines = [_least(slowest[0], "the least gain over `sphere`", slowest[1].timing.reference / slowest[1].timing.median)]  # type: ignore[union-attr]
+    for words, value in findings.WORST.items():
+        row, record = max(found, key=lambda f: _or_zero(value(f[1])))
+        lines.append(_least(row, words, value(record)))
+    yield "\n".join(lines)
+
+
+def _least(row: Row, words: str, value: float) -> str:
+    return f"- {words}: {number(value)} ({row.name})"
+
+
+def _planner(results: Results) -> Iterator[str]:
+    """How good the choice is."""
+    ours = results.ours
+    yield f"## How good the choice is (`{ours}`)"
+    rows, best_count, close = [], 0, 0
+    for row in results.rows:
+        mine, best = row.at(ours), row.best(results.tracers)
+        if mine is None or best is None or mine.timing is None or best.timing is None:
+            continue
+        share = best.timing.median / mine.timing.median
+        best_count += share == 1.0
+        close += share >= 1 / 1.1
+        rows.append((row.name, mine.note or ours, f"`{best.cell.tracer}`", number(share)))
+    yield table(("scene", "chosen", "fastest of all", "time of the fastest / of the chosen"), rows)
+    yield (
+        f"It was the fastest on {best_count} of {len(rows)} scenes, and within 10 % of the fastest on {close}; the "
+        "fastest is of the tracers with no more wrong rays. Two rows of the same shader differ by noise."
+    )
