@@ -25,15 +25,19 @@ class CpuRenderer:
 
     def radiance(self, shot: Shot, sample: int, progress: Progress | None) -> Buffer:
         """See Renderer."""
+        from sdfc.pipeline import deep_recursion
         from sdfc.reference.render import radiance
 
-        return radiance(shot.compiled, shot.view, shot.params, shot.size, jitter(sample), progress)
+        with deep_recursion():
+            return radiance(shot.compiled, shot.view, shot.params, shot.size, jitter(sample), progress)
 
     def probe(self, shot: Shot, progress: Progress | None) -> list[Buffer]:
         """See Renderer."""
+        from sdfc.pipeline import deep_recursion
         from sdfc.reference.render import probe
 
-        return probe(shot.compiled, shot.view, shot.params, shot.size, progress)
+        with deep_recursion():
+            return probe(shot.compiled, shot.view, shot.params, shot.size, progress)
 
     def depth(self, shot: Shot, progress: Progress | None) -> Buffer:
         """See Renderer."""

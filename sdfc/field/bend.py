@@ -18,8 +18,8 @@ from sdfc.field.interval_rules import RULES, Array, Interval
 from sdfc.field.interval_slopes import SLOPES, Slope
 from sdfc.field.order import evaluation_order
 
-BOXES = 512  # how many boxes `bend_bounds` looks at
-CELLS = 5  # its directions: half of a cube's faces in CELLS x CELLS cells
+BOXES = 384  # how many boxes `bend_bounds` looks at
+CELLS = 4  # its directions: half of a cube's faces in CELLS x CELLS cells
 AT_ONCE = 64  # boxes that are cut in one go
 _GAIN = 0.9  # three cuts are to bring this, or there are no more: half the bend saves a fifth of the steps
 

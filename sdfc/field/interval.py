@@ -128,18 +128,23 @@ class IntervalEvaluator:
         """
         values = _parameters(self._nodes, params or {})
         chunks = [
-            self._united(o[:, part], d[:, part], Interval(t_lo[part], t_hi[part]), values)
+            self._united(_points_on_rays(o[:, part], d[:, part], Interval(t_lo[part], t_hi[part])), values)
             for part in _parts(t_lo.shape[0])
         ]
         count = t_lo.shape[0]
         return _joined([c.lo for c in chunks], count), _joined([c.hi for c in chunks], count)
 
-    def _united(self, o: Array, d: Array, t: Interval, values: Mapping[str, Interval]) -> Interval:
-        points = _points_on_rays(o, d, t)
+    def value_across_jumps(self, lo: Array, hi: Array, params: Parameters | None = None) -> tuple[Array, Array]:
+        """Bounds of the root over boxes lo <= p <= hi, (3, n) each, like `across_jumps`'s over segments."""
+        values = _parameters(self._nodes, params or {})
+        chunks = [self._united(Interval(lo[:, part], hi[:, part]), values) for part in _parts(lo.shape[1])]
+        return _joined([c.lo for c in chunks], lo.shape[1]), _joined([c.hi for c in chunks], lo.shape[1])
+
+    def _united(self, points: Interval, values: Mapping[str, Interval]) -> Interval:
         result: Interval | None = None
         most, combination = 0, 0
         while combination < 2**most:
-            sides = Sides(combination, t.lo.shape[0])
+            sides = Sides(combination, points.lo.shape[-1])
             value, _ = self._run({"p": points}, values, None, sides)
             most = max(most, int(sides.jumps.max(initial=0)))
             result = value if result is None else hull(result, value)

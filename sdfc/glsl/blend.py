@@ -20,6 +20,7 @@ class BlendWriter:
         self._functions = functions
         self._live = live
         self.texts: list[str] = []
+        self._written: set[str] = set()
 
     def slope(self, body: Body, part: Part, direction: Expr, role: Role = Role.SLOPE) -> str:
         """The text of vec2(value, derivative along the ray) of a convex part, in the scene's units."""
@@ -35,15 +36,18 @@ class BlendWriter:
         name = blend.part.name
         leaves = _leaves(blend.tree)
         parts = [leaf.part for leaf in leaves]
-        self._function(blend, parts)
+        if name not in self._written:
+            self._written.add(name)
+            self._function(blend, parts)
         for leaf in leaves:
-            body.add(f"vec2 v_{leaf.part.name} = {self._line(body, leaf, directions)};", leaf.part.span)
+            body.once(f"vec2 v_{leaf.part.name} = {self._line(body, leaf, directions)};", leaf.part.span)
         arguments = ", ".join(f"v_{part.name}" for part in parts)
-        body.add(f"float v_{name} = {name}_ahead(0.0, {arguments});", blend.part.span)
+        body.once(f"float v_{name} = {name}_ahead(0.0, {arguments});", blend.part.span)
         sunk = "3.0 * fine" if cut else "0.0"
-        body.add(f"float left_{name} = {name}_clear(v_{name}, 0.5 * fine - {sunk}, {arguments});")
+        left = f"left_{name}{'_cut' if cut else ''}"
+        body.once(f"float {left} = {name}_clear(v_{name}, 0.5 * fine - {sunk}, {arguments});")
         least = literal(1.0 / max(blend.lipschitz, 1e-9))
-        step = f"max(left_{name}, {least} * v_{name})" if blend.lipschitz != 1.0 else f"max(left_{name}, v_{name})"
+        step = f"max({left}, {least} * v_{name})" if blend.lipschitz != 1.0 else f"max({left}, v_{name})"
         value = f"v_{name} + {sunk}" if cut else f"v_{name}"
         return f"ball(t, {value} <= fine ? {value} : {step}, fine)"
 

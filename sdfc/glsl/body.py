@@ -26,6 +26,7 @@ class Body:
         self._live: Callable[[Expr], str | None] = live
         self._indent = indent
         self._local: dict[int, str] = {}
+        self._once: set[str] = set()
         self._scope = Names(LOCALS)
         self._printer = Printer(self._name, self._scope)
 
@@ -56,6 +57,12 @@ class Body:
     def add(self, line: str, span: Span | None = None) -> None:
         comment = f"  // {place(span)}" if span is not None else ""
         self.lines.append("    " * self._indent + line + comment)
+
+    def once(self, line: str, span: Span | None = None) -> None:
+        """Adds a statement unless it is there: a part that has several places in the tree has its values once."""
+        if line not in self._once:
+            self._once.add(line)
+            self.add(line, span)
 
     def declare(self, type_: Type, name: str, text: str, span: Span | None = None) -> None:
         self._scope.reserve(name)

@@ -47,12 +47,13 @@ unpackSnorm2x16 unpackSnorm4x8 unpackUnorm2x16 unpackUnorm4x8 usubBorrow
 
 # What our own templates and generated functions define (a test compares this list with the templates).
 _TEMPLATES = """
-CENTRE CUT FAR GROW MOST_STEPS RADIUS Surface UP parabola ambient axis_x axis_y axis_z ball blended both box_distance
-box_distance_span map_span span_complement span_hull span_intersection span_union span_within
-box_interval camera_ray chord chord_reach color_out cone direction_out encode_srgb enter events eye far_outside
-farther first_out inside leave light_at map march meeting nearer normal_out occlusion_weight openness picture pixel
-point_falloff position_out prepare radiance radiance_out ray_ahead ray_cone ray_origin rebase reflect_light rounding
-sky sky_radiance steps sun_disc surface tangent tolerance tone_map trace transmit travelled window within
+Bracket CENTRE CUT FAR GROW MOST_STEPS RADIUS Surface UP ambient axis_x axis_y axis_z ball blended both box_distance
+box_distance_span box_interval bracket camera_ray chord chord_reach clearance color_out cone direction_out encode_srgb
+enter events eye far_outside farther first_out haste inside leave light_at look map map_span march meeting narrowed
+nearer normal_out occlusion_weight openness parabola picture pixel point_falloff position_out prepare radiance
+radiance_out ray_ahead ray_cone ray_origin rebase reflect_light rounding sky sky_radiance span_complement span_hull
+span_intersection span_union span_within steps sun_disc surface tangent tolerance tone_map trace transmit travelled
+window within
 """
 
 # Locals of templates and of generated statements: no function and no local of an expression may take these.

@@ -11,12 +11,12 @@ from sdfc.plan.steps import Ball
 def parabola_next(graph: FieldGraph, functions: Functions, body: Body, step: Ball, direction: Expr, cut: bool) -> str:
     """The text of a ball's answer, where its bend is known. `direction`: the ray's, in the part's own space."""
     assert step.bend is not None and step.inside
-    part, name = step.part, f"v_{step.part.name}"
+    part, name = step.part, f"v_{step.part.name}_bend"
     q = body.point(own_point(part.inverse, graph.input("p")), f"q_{part.name}")
     text = body.call(functions.of_part(part, Role.PARABOLA), [q, body.text(direction)])
     if not _is_one(part.stretch):
         text = f"{body.text(part.stretch)} * {text}"
-    body.add(f"vec3 {name} = {text};", part.span)
+    body.once(f"vec3 {name} = {text};", part.span)
     least = graph.constant(1.0 / max(step.lipschitz, 1e-9))
     radius = f"{name}.x" if _is_one(least) else f"{body.text(least)} * {name}.x"
     bend = graph.max(step.bend * part.own_grow * part.own_grow * part.stretch, 1e-6)

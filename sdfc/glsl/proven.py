@@ -16,6 +16,7 @@ from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
 from sdfc.glsl.parabola import parabola_next
+from sdfc.glsl.scope import Intervals, Scope
 from sdfc.plan.plan import FINE
 from sdfc.plan.steps import (
     All,
@@ -45,33 +46,6 @@ class TraceText:
     functions: str
     events: bool
     march: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Intervals:
-    """The ray's intervals with closed-form parts: names by part, side and skin, declared as they are asked for."""
-
-    body: Body
-    names: dict[tuple[int, Side, int], str]
-
-
-@dataclass(frozen=True, slots=True)
-class Scope:
-    """Where a step is written: the loop's body, the intervals and directions declared before it.
-
-    Inside an intersection (`cut`) what is marched is sunk a little, by more than the film that coinciding faces leave,
-    and asked for all the digits that float32 has. In a `core`, so is what is solved in closed form, by more where the
-    intersection's skins are thicker (sdfc/plan/touch).
-    """
-
-    body: Body
-    intervals: Intervals
-    directions: dict[int, Expr]
-    marched: dict[int, str]  # answers of what is marched, by step: asked once, also where its intersection asks twice
-    cut: bool = False
-    core: bool = False
-    twice: bool = False
-    skin: Expr | None = None
 
 
 class ProvenWriter:
@@ -367,14 +341,14 @@ class ProvenWriter:
     def _chord(self, step: Chord, body: Body, direction: Expr) -> str:
         """The value is looked at once more, where the tangent (or the part's box) ends."""
         part, name = step.part, step.part.name
-        body.add(f"vec2 v_{name} = {self._blends.slope(body, part, direction)};", part.span)
-        body.add(f"float reach_{name} = chord_reach(t, v_{name}, {step.name}.y, fine);")
+        body.once(f"vec2 v_{name}_chord = {self._blends.slope(body, part, direction)};", part.span)
+        body.once(f"float reach_{name} = chord_reach(t, v_{name}_chord, {step.name}.y, fine);")
         end = self._graph.input(f"p_{name}")
-        body.add(f"vec3 p_{name} = p + reach_{name} * d;")
+        body.once(f"vec3 p_{name} = p + reach_{name} * d;")
         q = body.point(own_point(part.inverse, end), f"q_{name}_end")
         text = body.call(self._functions.of_part(part, Role.SLOPE), [q, body.text(direction)])
         scale = "" if part.stretch.is_constant and part.stretch.number == 1.0 else f"{body.text(part.stretch)} * "
-        return f"chord(t, v_{name}.x, reach_{name}, {scale}{text}.x, fine)"
+        return f"chord(t, v_{name}_chord.x, reach_{name}, {scale}{text}.x, fine)"
 
     def _ball(self, step: Ball, scope: Scope) -> str:
         part, body = step.part, scope.body

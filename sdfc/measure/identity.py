@@ -22,7 +22,7 @@ Array: TypeAlias = NDArray[np.float64]
 # what proves; a change in any of them may change an answer
 _CODE = {
     "sdfc.field": (".py",),
-    "sdfc.reference": ("certify.py", "search.py", "parts.py", "closed.py", "events.py"),
+    "sdfc.reference": ("certify.py", "search.py", "parts.py", "region.py", "closed.py", "sharpen.py", "events.py"),
     "sdfc.measure": ("truth.py", "judge.py"),
     "sdfc.shape": (".py",),
     "sdfc.std": (".sdf",),

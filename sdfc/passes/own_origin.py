@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from sdfc.diagnostics import scene_error
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box, nothing
 from sdfc.facts.pointwise import is_pointwise
 from sdfc.field.graph import FieldGraph
 from sdfc.shape.graph import Affine, Apply, Shape, ShapeGraph, children_of
 from sdfc.shape.matrix import Matrix, identity, scaling, translation
+
+
+SMALLEST_RADIUS = 1e-100  # float64 still has the squares of what is scaled from it, and their inverses
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +33,8 @@ def frame_of(root: Shape, bounds: Bounds) -> Frame:
     if not box.is_finite or box.radius == 0.0:
         centre = box.centre if box.is_finite else (0.0, 0.0, 0.0)
         return Frame((centre[0], centre[1], centre[2]), 1.0, Box((-1.0,) * 3, (1.0,) * 3), False)
+    if box.radius < SMALLEST_RADIUS:
+        raise scene_error(f"the scene is less than {SMALLEST_RADIUS:g} across", root.span, "give it sizes nearer to 1")
     x, y, z = box.centre
     return Frame((x, y, z), box.radius, box, whole.is_finite)
 

@@ -59,12 +59,11 @@ def _tree(step: Step, depth: int) -> list[str]:
         case Tangent():
             return [f"{pad}{step.part.name} ({step.part.span}): tangents, its function is convex{_left_out(step.part)}"]
         case Chord():
-            return [
-                f"{pad}complement of {step.part.name} ({step.part.span}): chords, its function is convex{_left_out(step.part)}"
-            ]
+            reason = f"chords, its function is convex{_left_out(step.part)}"
+            return [f"{pad}complement of {step.part.name} ({step.part.span}): {reason}"]
         case Ball():
             side = "" if step.inside else "complement of "
-            reason = f"Lipschitz balls, constant {step.lipschitz:.4g}: curvature unknown{_left_out(step.part)}"
+            reason = f"Lipschitz balls, constant {step.lipschitz:.4g}{_bend(step)}{_left_out(step.part)}"
             return [f"{pad}{side}{step.part.name} ({step.part.span}): {reason}"]
         case Blend():
             reason = "the blend of lines below its operands (tangents, where they are convex), which is concave"
@@ -77,3 +76,10 @@ def _left_out(part: Part) -> str:
     """A primitive with a ray claim is marched only where the claim is dear, and the options leave such claims out."""
     known = part.shape.definition.is_primitive and part.shape.definition.claims.ray is not None
     return "; a closed form is known, dearer here than marching" if known else ""
+
+
+def _bend(step: Ball) -> str:
+    if step.bend is None:
+        return ": how it bends is not known"
+    worst = f"at most {step.bend.number:.4g}" if step.bend.is_constant else "no more than the params' values say"
+    return f", and parabolas: it bends down by {worst}"

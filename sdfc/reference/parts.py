@@ -14,9 +14,11 @@ import numpy as np
 
 from sdfc.field.graph import Expr, Op
 from sdfc.field.interval import IntervalEvaluator
+from sdfc.reference.region import region_of
 from sdfc.reference.search import Advance, Array, Index, Level, Mask, Rays, advance
 
 NOBODY = -1
+WORTHWHILE = 64  # rays: for fewer it is not worth while to find regions
 
 Progress = Callable[[float], None]
 
@@ -51,23 +53,32 @@ class Parts:
         parts = [distance] if rays.rate is not None else parts_of(distance)
         self._each = [self._whole] if len(parts) == 1 else [IntervalEvaluator(part) for part in parts]
         self._rays = rays
-        self._clear: Array | None = None  # (parts, rays): part i is above self._above from the start up to here
-        self._above = -np.inf
+        # known from `survey`: part i is above self._above from the start up to clear[i], and from leave[i] on
+        self._clear = np.full((len(self._each), rays.o.shape[1]), -np.inf)
+        self._leave = np.full(self._clear.shape, np.inf)
+        self._above = np.inf
 
     def survey(self, level: float, start: Array, end: Array, progress: Progress) -> First:
         """`first` for all rays. What is found is kept for searches at this level and below, from `start` on."""
-        self._clear, self._above = None, level
-        clear = np.repeat(start[None], len(self._each), axis=0)
-        everyone = np.arange(start.size)
-        found = self._first(level, clear, end, everyone, np.full(start.size, NOBODY), progress)
-        self._clear = clear
+        everyone, nobody = np.arange(start.size), np.full(start.size, NOBODY)
+        clearance = np.inf
+        self._clear[:] = start
+        for i, part in enumerate(self._each if start.size >= WORTHWHILE else ()):
+            region = region_of(part, level, self._rays, end)
+            if region is not None:
+                enter, self._leave[i] = region.interval(self._rays)
+                np.maximum(self._clear[i], enter, out=self._clear[i])
+                clearance = min(clearance, region.clearance)
+            progress(0.2 * (i + 1) / len(self._each))
+        found = self._first(level, self._clear, end, everyone, nobody, lambda share: progress(0.2 + 0.8 * share))
+        np.minimum(found.advance.clearance, clearance, out=found.advance.clearance)
+        self._above = level
         return found
 
     def first(self, level: float, start: Array, end: Array, index: Index, hint: Index) -> First:
         """How far the rays `index` are above `level` from `start` on. `hint`: the part likely to stop each."""
-        begin = np.repeat(start[None], len(self._each), axis=0)
-        if self._clear is not None and level <= self._above:
-            np.maximum(begin, self._clear[:, index], out=begin)
+        assert level <= self._above
+        begin = np.maximum(start, self._clear[:, index])
         found = self._first(level, begin, end, index, hint, lambda share: None)
         found.advance.reached = np.maximum(found.advance.reached, start)
         return found
@@ -77,11 +88,12 @@ class Parts:
         state = Advance(end.copy(), np.ones(index.size, bool), np.full(index.size, np.inf))
         found = First(state, np.full(index.size, NOBODY))
         for count, (part, among) in enumerate(self._turns(hint)):
-            asked = np.flatnonzero(among & (begin[part] < state.reached))
+            until = np.minimum(state.reached, self._leave[part, index])
+            asked = np.flatnonzero(among & (begin[part] < until))
             if asked.size:
                 some = self._rays.some(index[asked])
-                got = advance(self._each[part], some, Level(1.0, level), begin[part, asked], state.reached[asked])
-                begin[part, asked] = got.reached
+                got = advance(self._each[part], some, Level(1.0, level), begin[part, asked], until[asked])
+                begin[part, asked] = np.where(got.finished, state.reached[asked], got.reached)
                 _put(found, part, asked, got)
             progress((count + 1) / len(self._each))
         return found

@@ -17,7 +17,7 @@ def sharpened(enter: Array, leave: Array, gauge: Callable[[Array], Array]) -> tu
     """The intervals [enter, leave], (k, n) each, with the ends where `gauge` is 0; it is negative inside.
 
     `gauge(t)`: its value on each ray at t, (k, n) of both. An end is sought from the interval's middle to a little
-    beyond the end; where the gauge does not change its sign between them, as on a line that only touches, the end stays.
+    beyond the end; where the gauge does not change its sign between them, as on a line that only touches, it stays.
     """
     some = enter < leave
     with np.errstate(invalid="ignore"):

@@ -32,6 +32,10 @@ float openness(vec3 p, vec3 normal) {
 {% endif %}
 }
 
+{% if lights %}
+{% include "lib/clearance.glsl" %}
+
+{% endif %}
 // One loop, one call of trace: the ray of the eye first, then one to each light.
 vec4 radiance() {
     vec3 o, d;
@@ -45,6 +49,9 @@ vec4 radiance() {
     Surface s;
     bool hit = false;
     int light = -1;
+{% if lights %}
+    float lift = 0.0;
+{% endif %}
     do {
         float t = trace(o, d, start, limit);
         if (light < 0) {
@@ -58,14 +65,14 @@ vec4 radiance() {
             normal = dot(normal, view) > 0.0 ? normal : normalize(normal - 1.001 * dot(normal, view) * view);
             travelled += t;
 {% if lights %}
+            lift = clearance(s.field.w - slope * correction, steepness);
         } else if (t >= limit) {
             seen += irradiance * reflect_light(normal, view, toward, {{ surface.properties.color }}, {{ surface.properties.metallic }}, {{ surface.properties.roughness }});
 {% endif %}
         }
         light += 1;
 {% if lights %}
-        // shadow rays start clear of the surface by more than it may be wrong (Keinert 2014, section 3.3)
-        o = p + max({{ lift }}, 4.0 * tolerance(0.0)) / clamp(length(s.field.xyz), 0.05, 1.0) * normal;
+        o = p + lift * normal;
         light_at(light, o, toward, limit, irradiance);
         d = toward;
         start = 0.0;

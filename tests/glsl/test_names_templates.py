@@ -16,6 +16,7 @@ from sdfc.api.request import View
 from sdfc.diagnostics import DeviceError
 from sdfc.glsl import names
 from sdfc.pipeline import Compiled
+from sdfc.tracers import TRACERS
 
 VALIDATOR = shutil.which("glslangValidator")
 SUFFIXES = {"fragment": "frag", "compute": "comp", "vertex": "vert"}
@@ -49,8 +50,8 @@ def assert_valid(compiled: Compiled, validator: str, folder: Path) -> None:
 
 @pytest.mark.parametrize("name", SMALL)
 def test_small_scenes_are_valid(name: str, validator: str, tmp_path: Path) -> None:
-    assert_valid(compiled_text(SMALL[name]), validator, tmp_path)
-    assert_valid(compiled_text(SMALL[name], "sphere"), validator, tmp_path)
+    for tracer in TRACERS:
+        assert_valid(compiled_text(SMALL[name], tracer), validator, tmp_path)
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda p: p.name)

@@ -154,3 +154,11 @@ def test_every_node_has_a_place_in_the_source(name: str, data: st.DataObject) ->
     world = World()
     after = RUN[name](data.draw(solids(world, MENU)), world)
     assert all(node.span is SPAN for node in topological(after))
+
+
+def test_a_scene_that_is_too_small_for_float64_is_refused() -> None:
+    from sdfc.diagnostics import SceneError, Source
+    from sdfc.pipeline import compile_scene, load
+
+    with pytest.raises(SceneError, match="less than 1e-100 across"):
+        compile_scene(load(Source("test.sdf", "scene { sphere(1e-320) }")))

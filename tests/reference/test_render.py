@@ -165,3 +165,8 @@ def test_the_same_picture_as_opengl(gl: object, name: str) -> None:
     off = np.abs(colors[0] - colors[1]).max(axis=-1)
     assert (off > 2).sum() <= 10
     assert off.mean() < 0.1
+
+
+def test_a_blend_of_many_is_drawn() -> None:
+    text = "scene { union(blend: 0.1) { for i in 0..200: sphere(radius: 0.1).translate([0.1 * i, 0, 0]) } }"
+    assert (probe(text)[0][..., 3] > 0.5).any()

@@ -141,6 +141,11 @@ class Record:
         return sum(e.wrong for e in self.errors.values())
 
     @property
+    def lost(self) -> int:
+        """Wrong rays that are not merely early: that is an error of depth, and p99 tells it."""
+        return self.wrong - sum(e.early for e in self.errors.values())
+
+    @property
     def p99(self) -> float:
         """Of |t - t*| in pixels, on the grid; NaN where nothing was judged."""
         grid = self.errors.get("grid")

@@ -10,7 +10,7 @@ from sdfc.measure.bench import findings
 from sdfc.measure.bench.markdown import geometric_mean, number, table
 from sdfc.measure.bench.plan import REFERENCE
 from sdfc.measure.bench.results import PUBLISHED, Results, Row, speed_up
-from sdfc.measure.bench.store import Store
+from sdfc.measure.bench.store import RESULTS, Store
 from sdfc.measure.bench.tables import LEGEND, machine
 
 _PLOTS = (
@@ -23,21 +23,22 @@ def report(store: Store, folder: Path, page: Path | None) -> str:
     """The page, with links as they are from where it is kept (None: from the folder of the results)."""
     results = Results(store)
     where = Path(os.path.relpath(folder, page.parent if page is not None else folder))
-    parts = [*_opening(store, folder), *_times(results), *_errors(results), *_worst(results), *_planner(results)]
+    parts = [*_opening(store, folder, where), *_times(results), *_errors(results), *_worst(results), *_planner(results)]
     parts += [*findings.budgets(results), *findings.keinert(results)]
     pictures = [*_PLOTS, *findings.PLOTS, *((p.name, p.name) for p in sorted(folder.glob("*.steps.png")))]
     shown = [f"![{text}]({(where / name).as_posix()})" for name, text in pictures if (folder / name).exists()]
     return "\n\n".join([*parts, *(["## Pictures", *shown] if shown else [])]) + "\n"
 
 
-def _opening(store: Store, folder: Path) -> Iterator[str]:
+def _opening(store: Store, folder: Path, where: Path) -> Iterator[str]:
     command = f"sdfc bench --report {folder.as_posix()} -o docs/benchmarks.md"
+    readme = (where / ".." / ".." / "README.md").as_posix()
     yield f"<!-- made by: {command} -->"
     yield "# Benchmarks"
     yield (
-        f"Made from [{folder.name}]({'../' + folder.as_posix()}/results.json) by `{command}`; the numbers are those of "
-        "`sdfc bench` without arguments. Times are of primary rays only (a depth image), at the tolerance that sdfc "
-        "asks for: a 64th of half a pixel, or 16 roundings. Errors are against certified truth."
+        f"Made from [{folder.name}]({(where / RESULTS).as_posix()}) by `{command}`. Times are of primary rays "
+        "only (a depth image). Tolerance 1 is what sdfc asks for, a 64th of half a pixel or 16 roundings. Errors are "
+        "against certified truth. [bench/README.md]({readme}) says how to measure, and how to enter your own shader."
     )
     yield machine(store)
     yield LEGEND
@@ -49,8 +50,9 @@ def _times(results: Results) -> Iterator[str]:
     ours = results.ours
     yield (
         f"`{ours}` beside `{REFERENCE}` and the fastest published tracer ({', '.join(f'`{n}`' for n in PUBLISHED)}), "
-        "all at tolerance 1. A ratio is given where ours has no larger p99 error (by 2 %) and no more wrong rays; "
-        "ours may then be at the coarsest of its tolerances for which that holds."
+        "at tolerance 1. A ratio is given where ours has no larger p99 error (by 2 %) and no more wrong rays, at "
+        "the same tolerance or, where that is not so, at a finer one that was measured. The best is the fastest of those "
+        "that lose the fewest rays; to be early is no loss."
     )
     rows, of_reference, of_published = [], [], []
     for row in results.rows:
@@ -150,5 +152,5 @@ def _planner(results: Results) -> Iterator[str]:
     yield table(("scene", "chosen", "fastest of all", "time of the fastest / of the chosen"), rows)
     yield (
         f"It was the fastest on {best_count} of {len(rows)} scenes, and within 10 % of the fastest on {close}; the "
-        "fastest is of the tracers with no more wrong rays. Two rows of the same shader differ by noise."
+        "fastest is of the tracers that lose no more rays. Two rows of the same shader differ by noise."
     )

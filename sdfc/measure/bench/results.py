@@ -35,10 +35,10 @@ class Row:
         return [r for c, r in self.records.items() if c.tracer == tracer and c.budget is None and r.timing is not None]
 
     def best(self, tracers: Iterable[str]) -> Record | None:
-        """The fastest of these at tolerance 1; of those with the fewest wrong rays."""
+        """The fastest of these at tolerance 1; of those that lose the fewest rays."""
         found = [r for name in tracers if (r := self.at(name)) is not None and r.errors]
-        fewest = min((r.wrong for r in found), default=0)
-        return min((r for r in found if r.wrong == fewest), key=_ms, default=None)
+        fewest = min((r.lost for r in found), default=0)
+        return min((r for r in found if r.lost == fewest), key=_ms, default=None)
 
     @property
     def illegal(self) -> dict[str, str]:
@@ -68,23 +68,18 @@ class Results:
 
 
 def speed_up(row: Row, other: Record | None, ours: str) -> float:
-    """How many times as fast ours is, with no larger p99 error and no more wrong rays; NaN where it has not.
+    """How many times as fast ours is, with no larger p99 error and no more wrong rays; NaN where it is not so.
 
-    Both from frames drawn in turn: each as a multiple of the reference's time in its own rounds.
+    Ours is at the other's tolerance, its frames drawn in turn with the other's, or else at the fastest that is so.
     """
     if other is None or not other.errors:
         return math.nan
     allowed = other.p99 * SLACK if other.p99 == other.p99 else math.inf
     good = [r for r in row.all_of(ours) if r.errors and not r.p99 > allowed and r.wrong <= other.wrong]
-    return max((_relative(other) / _relative(r) for r in good), default=math.nan)
+    beside = [r for r in good if r.cell.tolerance == other.cell.tolerance]
+    return max((_ms(other) / _ms(r) for r in beside or good), default=math.nan)
 
 
 def _ms(record: Record) -> float:
     assert record.timing is not None
     return record.timing.median
-
-
-def _relative(record: Record) -> float:
-    """Time, in times of the reference."""
-    assert record.timing is not None
-    return record.timing.median / record.timing.reference
