@@ -141,13 +141,14 @@ def _length(
     if node.args[0].type is Type.FLOAT:
         return _abs(node, v, s, b, result, slope)
     across = rules.squared(rules.length(_rows(s[0], v[0])))
-    least = np.zeros(1)
-    bow = rules.settled(Interval(least, rules.divided(across, result).hi))
+    bow = rules.settled(Interval(np.zeros(1), rules.divided(across, result).hi))
     if b[0] is None:
         return bow
     bend = _rows(b[0], v[0])
     ratio = rules.settled(rules.divided(v[0], result))
-    unit = Interval(np.maximum(ratio.lo, -1.0), np.minimum(ratio.hi, 1.0))
+    # of one sign where the component is: a hair of the other sign, times an upward kink, would be everything
+    least, most = np.where(v[0].lo >= 0.0, 0.0, -1.0), np.where(v[0].hi <= 0.0, 0.0, 1.0)
+    unit = Interval(np.clip(ratio.lo, least, most), np.clip(ratio.hi, least, most))
     turned = rules.settled(rules.summed(rules.settled(rules.multiplied(unit, bend))))
     worst = -rules.length(rules.settled(bend)).hi
     return rules.added(bow, Interval(np.maximum(turned.lo, worst), turned.hi))

@@ -193,7 +193,7 @@ class ProvenWriter:
                 self._box(body, step.name, step.box)
                 self._boxes(body, step.step)
             case Chord():
-                self._box(body, step.name, step.part.box)
+                self._box(body, f"box_{step.part.name}", step.part.box)
             case Any() | All():
                 for child in step.steps:
                     self._boxes(body, child)
@@ -204,7 +204,7 @@ class ProvenWriter:
 
     def _box(self, body: Body, name: str, box: Box) -> None:
         centre, half = (", ".join(map(literal, numbers)) for numbers in (box.centre, box.half))
-        body.add(f"vec2 {name} = box_interval(o - vec3({centre}), d, vec3({half}));")
+        body.once(f"vec2 {name} = box_interval(o - vec3({centre}), d, vec3({half}));")
 
     def _directions(self, body: Body, root: Step) -> dict[int, Expr]:
         """The ray's direction in the own space of each tangent's part: the same all along the ray."""
@@ -342,7 +342,7 @@ class ProvenWriter:
         """The value is looked at once more, where the tangent (or the part's box) ends."""
         part, name = step.part, step.part.name
         body.once(f"vec2 v_{name}_chord = {self._blends.slope(body, part, direction)};", part.span)
-        body.once(f"float reach_{name} = chord_reach(t, v_{name}_chord, {step.name}.y, fine);")
+        body.once(f"float reach_{name} = chord_reach(t, v_{name}_chord, box_{name}.y, fine);")
         end = self._graph.input(f"p_{name}")
         body.once(f"vec3 p_{name} = p + reach_{name} * d;")
         q = body.point(own_point(part.inverse, end), f"q_{name}_end")

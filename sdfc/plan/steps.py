@@ -12,7 +12,9 @@ from typing import TypeAlias, assert_never
 
 from sdfc.diagnostics import Span
 from sdfc.facts.box import Box
+from sdfc.facts.exactness import exactness
 from sdfc.field.graph import Expr
+from sdfc.shape.definition import Exactness
 from sdfc.shape.graph import Apply
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
@@ -169,6 +171,15 @@ def is_finite(step: Step) -> bool:
             return any(is_finite(s) for s in step.steps)
         case _:
             assert_never(step)
+
+
+def may_flatten(step: Within) -> bool:
+    """Whether what is within may know of no more than a small distance, however far away: its box knows better then."""
+    return any(
+        exactness(leaf.part.shape)[leaf.part.shape.id] not in (Exactness.EXACT, Exactness.EXACT_OUTSIDE)
+        for leaf in leaves_of(step.step)
+        if not isinstance(leaf, Closed)
+    )
 
 
 def is_closed(step: Step) -> bool:

@@ -18,7 +18,7 @@ from sdfc.reference.region import region_of
 from sdfc.reference.search import Advance, Array, Index, Level, Mask, Rays, advance
 
 NOBODY = -1
-WORTHWHILE = 64  # rays: for fewer it is not worth while to find regions
+WORTHWHILE = 256  # rays: for fewer it is not worth while to find regions
 
 Progress = Callable[[float], None]
 

@@ -1,7 +1,8 @@
 """Where a function can be small at all: a box outside which it is proved to be large, found by cutting space.
 
-Cells are boxes; a cell over which the function's interval is above the level is done with, the others are cut into
-eight. The box is the hull of what is left. Rays that pass it need not be searched at all.
+Cells are boxes; a cell over which the function's interval is above the level is done with, the others are cut in two,
+across the axis that the interval suffers from most. The box is the hull of what is left. Rays that pass it need not be
+searched at all.
 """
 
 from __future__ import annotations
@@ -14,8 +15,9 @@ from sdfc.field.graph import Op, topological
 from sdfc.field.interval import IntervalEvaluator, Parameters
 from sdfc.reference.search import Array, Mask, Rays
 
-ROUNDS = 12  # of cutting
-MOST_CELLS = 4096  # at once
+ROUNDS = 60  # of cutting
+MOST_CELLS = 2048  # at once
+BUDGET = 2**14  # cells that are looked at in all
 FINE = 0.125  # of the box: cells smaller than that are not cut further
 FARTHEST = 2.0**60  # no cells are made beyond
 MARGIN = 1e-9  # of the coordinates: more than the roundings of a ray's intervals with the box
@@ -47,37 +49,67 @@ def region_of(evaluator: IntervalEvaluator, level: float, rays: Rays, end: Array
     reach = float((np.abs(rays.o).max(axis=0) + np.abs(end) * rays.speed).max(initial=0.0))
     if not reach < FARTHEST or not np.isfinite(rays.o).all():
         return None
-    lo, hi = _cells(inner, reach)
-    may_unite = all(node.op is not Op.SIGN for node in topological([evaluator.root]))
-    clearance = np.inf
+    cutter = _Cutter(evaluator, level, rays.params)
+    lo, hi = cutter.left_of(*_cells(inner, reach))
     for _ in range(ROUNDS):
-        bound = _lower_bound(evaluator, lo, hi, level, rays.params, may_unite)
-        left = ~(bound > level)
-        clearance = min(clearance, float(np.min(bound[~left], initial=np.inf)))
-        lo, hi = lo[:, left], hi[:, left]
         if lo.shape[1] == 0:
-            return Region(np.full(3, np.inf), np.full(3, -np.inf), clearance - level)
+            return Region(np.full(3, np.inf), np.full(3, -np.inf), cutter.clearance)
         size = hi.max(axis=1) - lo.min(axis=1)
-        if lo.shape[1] * 8 > MOST_CELLS or ((hi - lo) <= FINE * size[:, None]).all():
+        coarse = ((hi - lo) > FINE * size[:, None]).any(axis=0)
+        if not coarse.any() or lo.shape[1] > MOST_CELLS or cutter.seen > BUDGET:
             break
-        lo, hi = _eighths(lo, hi)
+        cut = cutter.left_of(*cutter.halves(lo[:, coarse], hi[:, coarse]))
+        lo, hi = (np.concatenate([end[:, ~coarse], part], axis=1) for end, part in zip((lo, hi), cut, strict=True))
     if np.abs(lo).max() > inner or np.abs(hi).max() > inner:
         return None
-    margin = MARGIN * max(inner, 1.0)
-    return Region(lo.min(axis=1) - margin, hi.max(axis=1) + margin, clearance - level)
+    margin = MARGIN * inner
+    return Region(lo.min(axis=1) - margin, hi.max(axis=1) + margin, cutter.clearance)
 
 
-def _lower_bound(
-    evaluator: IntervalEvaluator, lo: Array, hi: Array, level: float, params: Parameters, may_unite: bool
-) -> Array:
-    """Of the function over cells. Jumps have their two sides; a sign's third, 0, would need its own proof."""
-    bound, _ = evaluator.value({"p": (lo, hi)}, params)
-    bound = bound.copy()
-    rest = np.flatnonzero(~(bound > level))
-    if may_unite and rest.size:
-        sides, _ = evaluator.value_across_jumps(lo[:, rest], hi[:, rest], params)
-        bound[rest] = np.fmax(bound[rest], sides)
-    return bound
+class _Cutter:
+    """Tells which cells of space are left, and how to cut them."""
+
+    def __init__(self, evaluator: IntervalEvaluator, level: float, params: Parameters) -> None:
+        self._evaluator, self._level, self._params = evaluator, level, params
+        # jumps have their two sides; a sign's third, 0, would need a proof of its own
+        self._may_unite = all(node.op is not Op.SIGN for node in topological([evaluator.root]))
+        self.seen = 0
+        self.clearance = np.inf  # of the function above the level, in the cells that are done with
+
+    def left_of(self, lo: Array, hi: Array) -> tuple[Array, Array]:
+        """The cells over which the function is not proved to be above the level."""
+        self.seen += lo.shape[1]
+        bound = self._bound(lo, hi)
+        left = ~(bound > self._level)
+        self.clearance = min(self.clearance, float(np.min(bound[~left], initial=np.inf)) - self._level)
+        return lo[:, left], hi[:, left]
+
+    def halves(self, lo: Array, hi: Array) -> tuple[Array, Array]:
+        """Both halves of each cell: cut across the axis without whose width the bound would be best."""
+        count = lo.shape[1]
+        middle = lo + 0.5 * (hi - lo)
+        flat_lo, flat_hi = (np.tile(end, 3) for end in (lo, hi))
+        for axis in range(3):
+            part = slice(axis * count, (axis + 1) * count)
+            flat_lo[axis, part] = flat_hi[axis, part] = middle[axis]
+        self.seen += count
+        bound = self._bound(flat_lo, flat_hi).reshape(3, count)
+        # of equals the widest
+        bound += 1e-9 * np.abs(bound) * (hi - lo) / np.max(hi - lo)
+        axis = np.argmax(bound, axis=0)
+        column = np.arange(count)
+        first_hi, second_lo = hi.copy(), lo.copy()
+        first_hi[axis, column] = second_lo[axis, column] = middle[axis, column]
+        return np.concatenate([lo, second_lo], axis=1), np.concatenate([first_hi, hi], axis=1)
+
+    def _bound(self, lo: Array, hi: Array) -> Array:
+        bound, _ = self._evaluator.value({"p": (lo, hi)}, self._params)
+        bound = np.where(np.isnan(bound), -np.inf, bound)
+        rest = np.flatnonzero(~(bound > self._level))
+        if self._may_unite and rest.size:
+            sides, _ = self._evaluator.value_across_jumps(lo[:, rest], hi[:, rest], self._params)
+            bound[rest] = np.fmax(bound[rest], sides)
+        return bound
 
 
 def _cells(inner: float, reach: float) -> tuple[Array, Array]:
@@ -96,11 +128,3 @@ def _cells(inner: float, reach: float) -> tuple[Array, Array]:
 def _outside(grid: Array) -> Mask:
     """Unit cells of [-2, 2]^3 that are not in [-1, 1]^3."""
     return np.asarray(((grid < -1.0) | (grid >= 1.0)).any(axis=0))
-
-
-def _eighths(lo: Array, hi: Array) -> tuple[Array, Array]:
-    middle = lo + 0.5 * (hi - lo)
-    octants = np.stack(np.meshgrid(*[[False, True]] * 3, indexing="ij")).reshape(3, 8, 1)
-    first, second = (end[:, None, :] for end in (lo, hi))
-    half = middle[:, None, :]
-    return np.where(octants, half, first).reshape(3, -1), np.where(octants, second, half).reshape(3, -1)

@@ -6,14 +6,14 @@ import math
 
 import numpy as np
 import pytest
-from field_trees import PARAM_VALUES, trees
+from field_trees import PARAM_VALUES, Recipe, trees
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from sdfc.field.bend import BendEvaluator, bend_bounds
 from sdfc.field.core import is_positive, signed_core
-from sdfc.field.graph import LEAVES, Expr, FieldGraph, Op, Type, inputs_of, params_of
+from sdfc.field.graph import LEAVES, Expr, FieldGraph, Op, Type, inputs_of, params_of, substitute
 from sdfc.field.interval_bends import BENDS
 from sdfc.field.interval_rules import Interval
 from sdfc.field.numeric import Evaluator
@@ -35,11 +35,14 @@ def values_on(root: Expr, o: Array, d: Array, t: Array) -> Array:
 
 @settings(max_examples=150, suppress_health_check=list(HealthCheck))
 @given(tree=trees(Type.FLOAT), seed=st.integers(0, 2**31))
-def test_second_differences_are_within_the_bounds(tree: object, seed: int) -> None:
+def test_second_differences_are_within_the_bounds(tree: Recipe, seed: int) -> None:
     """Along any line of a box, for any expression: (f(t - h) - 2 f(t) + f(t + h)) / h^2, however wide h is."""
     graph = FieldGraph()
-    root = tree.build(graph)  # type: ignore[attr-defined]
-    if {str(i.value) for i in inputs_of(root)} != {"p"}:
+    p = graph.input("p")
+    parts = {Type.FLOAT: p[1], Type.VEC2: p.swizzle("zx"), Type.VEC3: p.swizzle("yzx"), Type.VEC4: p.swizzle("xyzy")}
+    whole = tree.build(graph)
+    root = substitute(whole, {i: parts[i.type] for i in inputs_of(whole) if i is not p})
+    if not inputs_of(root):
         return
     random = np.random.default_rng(seed)
     count = 40
@@ -50,7 +53,7 @@ def test_second_differences_are_within_the_bounds(tree: object, seed: int) -> No
     known = {n: np.asarray(PARAM_VALUES[n], float) for n in params_of([root])}
     params = {n: Interval(*[v.reshape(-1) if v.size == 1 else v.reshape(-1, 1)] * 2) for n, v in known.items()}
     box = Interval(np.minimum(o, end), np.maximum(o, end))
-    value, bend = BendEvaluator(root, {})(box, Interval(d, d), params)
+    _, bend = BendEvaluator(root, {})(box, Interval(d, d), params)
     t = np.linspace(0.0, 1.0, POINTS)
     values = np.stack([values_on(root, o, d * reach, np.array([x]))[0] for x in t])
     for width in (1, 4, 16):
@@ -60,7 +63,6 @@ def test_second_differences_are_within_the_bounds(tree: object, seed: int) -> No
         with np.errstate(invalid="ignore"):
             good = (second >= bend.lo * square - slack) & (second <= bend.hi * square + slack)
         assert (good | ~np.isfinite(second)).all()
-    assert (values >= value.lo - 1e-9 * (1.0 + np.abs(values))).all() or not np.isfinite(values).all()
 
 
 def twisted(graph: FieldGraph, p: Expr, rate: float) -> Expr:
@@ -101,14 +103,7 @@ def test_a_field_is_above_its_parabola(name: str) -> None:
     parabola = values[0] + slope * t[:, None] - 0.5 * bend * t[:, None] ** 2
     assert clear.sum() > 10_000
     assert (values >= parabola - 1e-5)[clear].all()
-    assert bend < 40.0 * max(1.0, _seen(values, clear, t)), "the bound is of no use"
-
-
-def _seen(values: Array, clear: Array, t: Array) -> float:
-    """The hardest bend that the samples show."""
-    step = t[1] - t[0]
-    second = (values[2:] - 2.0 * values[1:-1] + values[:-2]) / step**2
-    return float(-second[clear[2:]].min(initial=0.0))
+    assert bend < 250.0, "the bound is of no use"
 
 
 def test_a_downward_kink_has_no_bound() -> None:

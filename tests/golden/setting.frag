@@ -362,6 +362,14 @@ float openness(vec3 p, vec3 normal) {
     return occlusion_weight(distances, heights);
 }
 
+// How far along the normal a secondary ray starts: twice what the point at hand may be off the surface, `residual` the value
+// there where that is more, but no more than half a pixel (Keinert 2014, section 3.3). A field that is flatter than a
+// distance is off by more than it says.
+float clearance(float residual, float steepness) {
+    float off = min(abs(residual), cone.x + cone.y * travelled);
+    return 2.0 * max(max(0.5 * 7.6293945e-6, 2.0 * tolerance(0.0)), off) / clamp(steepness, 0.05, 1.0);
+}
+
 // One loop, one call of trace: the ray of the eye first, then one to each light.
 vec4 radiance() {
     vec3 o, d;
@@ -372,6 +380,7 @@ vec4 radiance() {
     Surface s;
     bool hit = false;
     int light = -1;
+    float lift = 0.0;
     do {
         float t = trace(o, d, start, limit);
         if (light < 0) {
@@ -389,12 +398,12 @@ vec4 radiance() {
             normal = normalize(s.field.xyz);
             normal = dot(normal, view) > 0.0 ? normal : normalize(normal - 1.001 * dot(normal, view) * view);
             travelled += t;
+            lift = clearance(s.field.w - slope * correction, steepness);
         } else if (t >= limit) {
             seen += irradiance * reflect_light(normal, view, toward, s.color, 0.0, 0.5);
         }
         light += 1;
-        // shadow rays start clear of the surface by more than it may be wrong (Keinert 2014, section 3.3)
-        o = p + max(7.6293945e-6, 4.0 * tolerance(0.0)) / clamp(length(s.field.xyz), 0.05, 1.0) * normal;
+        o = p + lift * normal;
         light_at(light, o, toward, limit, irradiance);
         d = toward;
         start = 0.0;

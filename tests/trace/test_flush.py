@@ -41,10 +41,10 @@ TWISTED = f"{BLOCK}.twist(40deg)"
 HALF = "box(size: [3, 1, 3]).translate([0, {y}, 0])"
 SIDE_ON = "box(size: [1.5, 3, 3]).translate([{x}, 0, 0])"
 CONE = "cone(radius: 0.7, height: 1)"
-MELTED = f"smooth_union(0.2) {{ {SOFT} sphere(radius: 0.4).translate([0.7, 0.1, 0]) }}"
+FLAT = "rounded_box(size: [1, 0.9, 1], radius: 0.1)"
+MELTED = f"smooth_union(0.2) {{ {FLAT} sphere(radius: 0.4).translate([0.7, 0.1, 0]) }}"
 ROD = "rounded_cylinder(radius: 0.3, height: 2, rounding: 0.1).rotate(x: 90deg)"
 LONG = "cylinder(radius: 0.2, height: 0.5).scale([5, 1, 1])"
-FLAT = "rounded_box(size: [1, 0.9, 1], radius: 0.1)"
 LINK = "link(straight: 0.6, major: 0.5, minor: 0.2)"
 
 PAIRS = [

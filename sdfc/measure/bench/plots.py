@@ -130,7 +130,7 @@ def ratios(records: list[Record]) -> Any:
     for name in dict.fromkeys(r.cell.tracer for r in some):
         mine = [r for r in some if r.cell.tracer == name and r.timing is not None]
         places = [rows.index(f"{r.cell.scene} {r.cell.size}") for r in mine]
-        speeds = [r.timing.reference / r.timing.median for r in mine if r.timing is not None]
+        speeds = [r.timing.gain for r in mine if r.timing is not None]
         axis.plot(speeds, places, linestyle="", **_style(name))
     axis.set_yticks(range(len(rows)), rows, fontsize=7)
     axis.axvline(1.0, color="grey", linewidth=0.8)

@@ -47,6 +47,11 @@ class Timing:
     rounds: int
     reference: float
 
+    @property
+    def gain(self) -> float:
+        """How many times as fast as the reference."""
+        return self.reference / self.median
+
 
 @dataclass(frozen=True, slots=True)
 class Building:

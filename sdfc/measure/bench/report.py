@@ -32,13 +32,17 @@ def report(store: Store, folder: Path, page: Path | None) -> str:
 
 def _opening(store: Store, folder: Path, where: Path) -> Iterator[str]:
     command = f"sdfc bench --report {folder.as_posix()} -o docs/benchmarks.md"
-    readme = (where / ".." / ".." / "README.md").as_posix()
+    readme = folder.parent.parent / "README.md"  # of bench/
+    link = Path(os.path.normpath(where / ".." / ".." / "README.md")).as_posix()
+    more = (
+        f" [bench/README.md]({link}) says how to measure, and how to enter your own shader." if readme.exists() else ""
+    )
     yield f"<!-- made by: {command} -->"
     yield "# Benchmarks"
     yield (
         f"Made from [{folder.name}]({(where / RESULTS).as_posix()}) by `{command}`. Times are of primary rays "
         "only (a depth image). Tolerance 1 is what sdfc asks for, a 64th of half a pixel or 16 roundings. Errors are "
-        "against certified truth. [bench/README.md]({readme}) says how to measure, and how to enter your own shader."
+        f"against certified truth.{more}"
     )
     yield machine(store)
     yield LEGEND
@@ -51,8 +55,8 @@ def _times(results: Results) -> Iterator[str]:
     yield (
         f"`{ours}` beside `{REFERENCE}` and the fastest published tracer ({', '.join(f'`{n}`' for n in PUBLISHED)}), "
         "at tolerance 1. A ratio is given where ours has no larger p99 error (by 2 %) and no more wrong rays, at "
-        "the same tolerance or, where that is not so, at a finer one that was measured. The best is the fastest of those "
-        "that lose the fewest rays; to be early is no loss."
+        "the same tolerance or, where that is not so, at a finer one that was measured. The best is the fastest of "
+        "those that lose the fewest rays; to be early is no loss."
     )
     rows, of_reference, of_published = [], [], []
     for row in results.rows:
@@ -124,15 +128,15 @@ def _worst(results: Results) -> Iterator[str]:
     if not found:
         return
     yield f"## Worst cases of `{ours}`"
-    slowest = min(found, key=lambda f: f[1].timing.reference / f[1].timing.median if f[1].timing else 0.0)
-    lines = [_least(slowest[0], "the least gain over `sphere`", slowest[1].timing.reference / slowest[1].timing.median)]  # type: ignore[union-attr]
+    least, gain = min(((row, r.timing.gain) for row, r in found if r.timing), key=lambda f: f[1])
+    lines = [_line(least, f"the least gain over `{REFERENCE}`", gain)]
     for words, value in findings.WORST.items():
         row, record = max(found, key=lambda f: _or_zero(value(f[1])))
-        lines.append(_least(row, words, value(record)))
+        lines.append(_line(row, words, value(record)))
     yield "\n".join(lines)
 
 
-def _least(row: Row, words: str, value: float) -> str:
+def _line(row: Row, words: str, value: float) -> str:
     return f"- {words}: {number(value)} ({row.name})"
 
 

@@ -54,7 +54,7 @@ def row(record: Record) -> Sequence[str]:
     return (
         record.cell.tracer,
         "" if t is None else f"{number(t.median)} ({number(t.low)}..{number(t.high)})",
-        "" if t is None else number(t.reference / t.median),
+        "" if t is None else number(t.gain),
         "" if w is None else number(w.evaluations_mean),
         "" if w is None else number(w.steps_mean),
         "" if w is None else f"{w.steps_p99:.0f}",
