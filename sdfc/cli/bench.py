@@ -166,8 +166,9 @@ def _report(folder: Path, output: Path | None) -> None:
     from sdfc.measure.bench.report import report
     from sdfc.measure.bench.store import read
 
-    text = report(read(folder), folder, output)
-    if output is None or str(output) == "-":
+    page = output or Path("-")
+    text = report(read(folder), folder, page)
+    if page == Path("-"):
         click.echo(text, nl=False)
     else:
-        write(output, text.encode())
+        write(page, text.encode())

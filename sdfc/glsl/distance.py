@@ -12,7 +12,7 @@ from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
-from sdfc.plan.steps import All, Any, Ball, Blend, Chord, Closed, Many, Part, Step, Tangent, Within
+from sdfc.plan.steps import All, Any, Ball, Blend, Chord, Closed, Many, Part, Step, Tangent, Within, may_flatten
 
 
 class DistanceWriter:
@@ -58,7 +58,7 @@ class DistanceWriter:
             case Chord():
                 return self._value(step.part, body, False)
             case Within():
-                return self._within(step, body) if step.is_needed else self._fold(step.step, body)
+                return self._within(step, body) if step.is_needed else self._bounded(step, body)
             case Any():
                 return self._joined("min", step.steps, body)
             case All():
@@ -91,11 +91,20 @@ class DistanceWriter:
     def _within(self, step: Within, body: Body) -> str:
         """Outside its box a part's own value may mean nothing: there the distance to the box is the bound."""
         inner = self._fold(step.step, body)
-        centre = ", ".join(literal(c) for c in step.box.centre)
-        half = ", ".join(literal(h) for h in step.box.half)
         margin = literal(1e-3 * step.box.radius)
         outside = "box_distance" if self._traced else "far_outside"
-        return f"within({outside}(p - vec3({centre}), vec3({half})), {inner}, {margin})"
+        return f"within({outside}({_place(step)}), {inner}, {margin})"
+
+    def _bounded(self, step: Within, body: Body) -> str:
+        """A value that holds everywhere, but may be small far away: to trace by it, the greater of two bounds."""
+        inner = self._fold(step.step, body)
+        return f"max({inner}, box_distance({_place(step)}))" if self._traced and may_flatten(step) else inner
+
+
+def _place(step: Within) -> str:
+    centre = ", ".join(literal(c) for c in step.box.centre)
+    half = ", ".join(literal(h) for h in step.box.half)
+    return f"p - vec3({centre}), vec3({half})"
 
 
 def _span(step: Step) -> Span | None:

@@ -14,7 +14,7 @@ from sdfc.glsl.functions import AHEAD, Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
 from sdfc.glsl.names import identifier
-from sdfc.plan.steps import All, Any, Ball, Blend, Chord, Closed, Many, Part, Step, Tangent, Within
+from sdfc.plan.steps import All, Any, Ball, Blend, Chord, Closed, Many, Part, Step, Tangent, Within, may_flatten
 
 _LENGTH = identifier(AHEAD)
 _BOX_SPAN = "box_distance_span"
@@ -59,7 +59,7 @@ class SpanWriter:
             case Chord():
                 return self._value(step.part, body, False)
             case Within():
-                return self._within(step, body) if step.is_needed else self._fold(step.step, body)
+                return self._within(step, body) if step.is_needed else self._bounded(step, body)
             case Any():
                 return self._joined("span_union", step.steps, body)
             case All():
@@ -97,15 +97,22 @@ class SpanWriter:
 
     def _within(self, step: Within, body: Body) -> str:
         inner = self._fold(step.step, body)
-        centre = ", ".join(literal(c) for c in step.box.centre)
-        half = ", ".join(literal(h) for h in step.box.half)
         margin = literal(1e-3 * step.box.radius)
-        box = f"{_BOX_SPAN}(p - vec3({centre}), d, {_LENGTH}, vec3({half}))"
-        return f"span_within({box}, {inner}, {margin})"
+        return f"span_within({_box(step)}, {inner}, {margin})"
+
+    def _bounded(self, step: Within, body: Body) -> str:
+        inner = self._fold(step.step, body)
+        return f"span_intersection({_box(step)}, {inner})" if may_flatten(step) else inner
 
     def _fresh(self) -> str:
         self._count += 1
         return f"d{self._count}"
+
+
+def _box(step: Within) -> str:
+    centre = ", ".join(literal(c) for c in step.box.centre)
+    half = ", ".join(literal(h) for h in step.box.half)
+    return f"{_BOX_SPAN}(p - vec3({centre}), d, {_LENGTH}, vec3({half}))"
 
 
 def _box_span(graph: FieldGraph) -> Function:

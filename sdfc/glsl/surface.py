@@ -38,7 +38,7 @@ from sdfc.plan.steps import (
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
 
-_BACK = "4.0"  # so far back, in roundings
+_BACK = "8.0"  # so far back, in roundings
 _SUNK = "3.0"  # what is marched is sunk so far in an intersection (sdfc/glsl/proven)
 
 PROPERTIES = ("color", "metallic", "roughness", "emission", "transmission", "ior", "tint")

@@ -35,8 +35,8 @@ Mask: TypeAlias = NDArray[np.bool_]
 Params: TypeAlias = Mapping[str, tuple[float, ...]]
 Progress: TypeAlias = Callable[[float], None]
 
-BATCH = 4096  # rays proved at once: between them progress is told
-AFFORDABLE = 30_000_000  # nodes of the field times rays: beyond it intervals check a sample of what events answer
+BATCH = 16384  # rays proved at once: many take hardly more calls of NumPy than few
+AFFORDABLE = 200_000_000  # nodes of the field times rays: beyond it intervals check a sample of what events answer
 LEAST_SAMPLE = 64
 AGREE = 1e-9  # of the largest coordinate: how far apart the two proofs may place an uncontested entry
 CREASE = np.radians(1.0)
@@ -193,9 +193,23 @@ class _Question:
         parts = []
         for first in range(0, max(index.size, 1), BATCH):
             some = index[first : first + BATCH]
-            o, d, end = self.o[:, some], self.d[:, some], self.end[some]
-            parts.append(first_roots(self.distance, o, d, 0.0, end, self.params, thin=THIN, tolerance=self.tolerance))
-            progress(min(1.0, (first + BATCH) / max(index.size, 1)))
+
+            def tell(share: float, before: int = first, size: int = some.size) -> None:
+                progress((before + share * size) / max(index.size, 1))
+
+            parts.append(
+                first_roots(
+                    self.distance,
+                    self.o[:, some],
+                    self.d[:, some],
+                    0.0,
+                    self.end[some],
+                    self.params,
+                    thin=THIN,
+                    tolerance=self.tolerance,
+                    progress=tell,
+                )
+            )
         return joined(parts)
 
     def _check(self, events: Certificate, proved: Certificate, index: NDArray[np.intp]) -> None:

@@ -175,11 +175,11 @@ def is_finite(step: Step) -> bool:
 
 def may_flatten(step: Within) -> bool:
     """Whether what is within may know of no more than a small distance, however far away: its box knows better then."""
-    return any(
-        exactness(leaf.part.shape)[leaf.part.shape.id] not in (Exactness.EXACT, Exactness.EXACT_OUTSIDE)
-        for leaf in leaves_of(step.step)
-        if not isinstance(leaf, Closed)
-    )
+    match step.step:
+        case Ball(part=part):
+            return exactness(part.shape)[part.shape.id] not in (Exactness.EXACT, Exactness.EXACT_OUTSIDE)
+        case _:
+            return False
 
 
 def is_closed(step: Step) -> bool:

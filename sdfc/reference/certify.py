@@ -95,6 +95,7 @@ def first_roots(
     - HIT: distance goes below -tolerance, and before the entry there is no separate dip: after the first
       distance <= tolerance it stays below 2 tolerance up to the entry, then below tolerance down to -tolerance;
     and no film was passed. With tolerance = 0 only AMBIGUOUS rays and rays that passed a film are contested.
+    `progress` is told what share is done.
     """
     rays = Rays.of(o, d, params or {}, resolution, lipschitz)
     parts = Parts(distance, rays)

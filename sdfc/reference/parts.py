@@ -18,6 +18,7 @@ from sdfc.reference.region import region_of
 from sdfc.reference.search import Advance, Array, Index, Level, Mask, Rays, advance
 
 NOBODY = -1
+MOST_TURNS = 8  # of all parts, to prove together what none proves alone
 WORTHWHILE = 256  # rays: for fewer it is not worth while to find regions
 
 Progress = Callable[[float], None]
@@ -120,18 +121,21 @@ class Parts:
         return lo, hi
 
     def below(self, level: float, start: Array, end: Array, index: Index, owner: Index) -> Mask:
-        """Where the distance is proved to be below `level` all along: its owner's, or else the whole."""
+        """Where the distance is proved to be below `level` all along: by its owner, or by parts taking turns."""
         sought = Level(-1.0, -level)
-        proved = np.zeros(index.size, bool)
-        for part in np.unique(owner[owner != NOBODY]):
-            mine = np.flatnonzero(owner == part)
-            some = self._rays.some(index[mine])
-            proved[mine] = advance(self._each[part], some, sought, start[mine], end[mine]).finished
-        rest = np.flatnonzero(~proved)
-        if rest.size and len(self._each) > 1:
-            some = self._rays.some(index[rest])
-            proved[rest] = advance(self._whole, some, sought, start[rest], end[rest]).finished
-        return proved
+        reached = start.copy()
+        for _ in range(MOST_TURNS):
+            before = reached.copy()
+            for part, among in self._turns(owner):
+                # a part that is above the surveyed level up to the end is hardly of help
+                useful = (owner == part) | (self._clear[part, index] <= end)
+                asked = np.flatnonzero(among & useful & (reached < end))
+                if asked.size:
+                    some = self._rays.some(index[asked])
+                    reached[asked] = advance(self._each[part], some, sought, reached[asked], end[asked]).reached
+            if not ((reached > before) & (reached < end)).any():
+                break
+        return np.asarray(reached >= end)
 
 
 def _put(found: First, part: int, asked: Index, got: Advance) -> None:

@@ -16,6 +16,8 @@ Index: TypeAlias = NDArray[np.intp]
 
 SMALLEST_SCALE = 1e-6  # coordinates below it do not ask for a narrower bracket
 MAX_STEPS = 4000  # per ray and search; what is left then is AMBIGUOUS, never guessed
+MOST_SEGMENTS = 16  # of a ray tried at once
+FULL = 512  # segments: fewer take hardly less time
 FIRST = 0.25  # of what is left of a ray: the next segment to be tried where all of it was not proved at once
 
 
@@ -112,70 +114,92 @@ class _Search:
         self.state.exhausted[active] = True
         return self.state
 
+    def _edges(self, active: Index) -> Array:
+        """The ends of consecutive segments of each ray, (k + 1, n): several where rays are few, as calls are dear."""
+        at_once = max(1, min(MOST_SEGMENTS, FULL // active.size))
+        edges = self.state.reached[active] + np.arange(at_once + 1.0)[:, None] * self._width[active]
+        return np.minimum(edges, self._end[active])
+
     def _open_step(self, active: Index) -> Index:
         """Tries whole segments by their values alone; returns the rays that go on."""
         if active.size == 0:
             return active
-        some = self._rays.some(active)
-        a = self.state.reached[active]
-        b = np.minimum(a + self._width[active], self._end[active])
-        lo, _ = self._level.bounds(*self._evaluator.between(some.o, some.d, a, b, some.params))
-        empty = lo > 0.0
-        self._met(active[empty], lo[empty])
-        moved = active[empty]
-        self.state.reached[moved] = b[empty]
+        edges = self._edges(active)
+        some = self._rays.some(np.tile(active, edges.shape[0] - 1))
+        bounds = self._evaluator.between(some.o, some.d, edges[:-1].ravel(), edges[1:].ravel(), some.params)
+        lo = self._level.bounds(*bounds)[0].reshape(edges[1:].shape)
+        empty = (lo > 0.0) | (edges[:-1] >= edges[1:])
+        lead = _leading(empty)
+        column = np.arange(active.size)
+        self._met(active, lo, lead)
+        moved, failed = active[lead > 0], active[lead < empty.shape[0]]
+        self.state.reached[active] = edges[lead, column]
         self._value[moved] = np.nan
-        self._width[moved] *= 2.0
-        finished = empty & (b >= self._end[active])
-        self.state.finished[active[finished]] = True
-        failed = active[~empty]
+        self._width[active] *= np.where(lead == empty.shape[0], 2.0, 1.0)
         self._close[failed] = self._width[failed] <= FIRST * self._span[failed]
         self._width[failed] = np.minimum(self._width[failed], FIRST * self._span[failed])
-        return active[~finished]
+        return self._going(active, np.ones(active.size, bool))
+
+    def _going(self, active: Index, go: Mask) -> Index:
+        """The rays that are not at their ends, of those that may go on."""
+        finished = self.state.reached[active] >= self._end[active]
+        self.state.finished[active[finished]] = True
+        return active[go & ~finished]
 
     def _close_step(self, active: Index) -> Index:
         """One step with slopes; returns the rays that go on."""
         if active.size == 0:
             return active
-        some, level, state = self._rays.some(active), self._level, self.state
-        self._ask(active, some)
-        a, w, v = state.reached[active], self._width[active], np.maximum(self._value[active], 0.0)
-        b = np.minimum(a + w, self._end[active])
-        resolution = some.width(a)
+        edges = self._edges(active)
+        shape, column = edges[1:].shape, np.arange(active.size)
+        some = self._rays.some(np.tile(active, shape[0]))
+        a, b = edges[:-1].ravel(), edges[1:].ravel()
+        v = np.maximum(self._values(active, some, a), 0.0)
         slab = self._evaluator.along_ray(some.o, some.d, a, b, some.params)
-        lo, _ = level.bounds(slab.lo, slab.hi)
-        fall, rise = level.slopes(slab.slope_lo, slab.slope_hi)
+        lo, _ = self._level.bounds(slab.lo, slab.hi)
+        fall, rise = self._level.slopes(slab.slope_lo, slab.slope_hi)
         lo = self._past_jumps(some, a, b, lo, fall)
         proved = _proved(some, v, fall)
         proved_end = np.where(np.isinf(proved), np.inf, np.nextafter(a + proved, a))
-        empty = (lo > 0.0) | (proved_end >= b)
-        reached = np.where(empty, b, np.minimum(proved_end, b))
+        empty = ((lo > 0.0) | (proved_end >= b) | (a >= b)).reshape(shape)
+        lead = _leading(empty)
+        bound = np.maximum(lo, np.where(proved_end >= b, v + np.minimum(fall, 0.0) * (b - a), -np.inf))
+        self._met(active, bound.reshape(shape), lead)
+        # the first segment that is not proved, and how far into it
+        last = np.minimum(lead, shape[0] - 1)
+        here = last * active.size + column
+        a, b, v, proved, proved_end, rise = (x[here] for x in (a, b, v, proved, proved_end, rise))
+        done = lead == shape[0]
+        reached = np.where(done, b, np.clip(proved_end, a, b))
+        resolution = self._rays.some(active).width(a)
         # where it falls all along, the root (if any) is before a + value / -rise
         newton = np.where(rise < 0.0, 2.0 * (v / -rise - proved), np.inf)
+        w = self._width[active]
         shorter = np.minimum(np.maximum(2.0 * proved, w / 8.0), np.maximum(newton, resolution / 2.0))
-        self._met(active, np.maximum(lo, np.where(empty, v + np.minimum(fall, 0.0) * (b - a), -np.inf)))
-        state.reached[active] = reached
-        self._width[active] = np.where(empty, 2.0 * w, np.minimum(shorter, w / 2.0))
-        finished = empty & (b >= self._end[active])
-        state.finished[active[finished]] = True
-        go = ~finished & (empty | (b - a > resolution))
-        self._value[active[go & (reached > a)]] = np.nan
-        self._close[active] = ~empty
-        return active[go]
+        self._width[active] = np.where(done, 2.0 * w, np.minimum(shorter, w / 2.0))
+        self.state.clearance[active[~done & (reached > a)]] = 0.0  # it fell, nobody knows how far
+        self._value[active[reached > self.state.reached[active]]] = np.nan
+        self.state.reached[active] = reached
+        self._close[active] = ~done
+        return self._going(active, done | (b - a > resolution))
 
-    def _ask(self, active: Index, some: Rays) -> None:
-        """The function's value where the rays are, of those of which it is not known."""
-        unknown = np.isnan(self._value[active])
-        if not unknown.any():
-            return
-        asked = active[unknown]
-        step = some.some(unknown)
-        value, _ = self._level.bounds(*self._evaluator.at(step.o, step.d, self.state.reached[asked], step.params))
-        self._value[asked] = np.where(np.isnan(value), -np.inf, value)
+    def _values(self, active: Index, some: Rays, a: Array) -> Array:
+        """Lower bounds of the function at the starts `a` of segments; the first ones are kept."""
+        known = np.concatenate([self._value[active], np.full(a.size - active.size, np.nan)])
+        unknown = np.flatnonzero(np.isnan(known))
+        if unknown.size:
+            step = some.some(unknown)
+            value, _ = self._level.bounds(*self._evaluator.at(step.o, step.d, a[unknown], step.params))
+            known[unknown] = np.where(np.isnan(value), -np.inf, value)
+        self._value[active] = known[: active.size]
+        return known
 
-    def _met(self, index: Index, bound: Array) -> None:
+    def _met(self, index: Index, bound: Array, lead: Index) -> None:
+        """Remembers the least bound over the segments (k, n) that are proved, and 0 where one was not."""
         bound = np.where(np.isnan(bound), 0.0, np.maximum(bound, 0.0))
-        self.state.clearance[index] = np.minimum(self.state.clearance[index], bound)
+        among = np.arange(bound.shape[0])[:, None] < lead
+        least = np.where(among, bound, np.inf).min(axis=0)
+        self.state.clearance[index] = np.minimum(self.state.clearance[index], least)
 
     def _past_jumps(self, rays: Rays, a: Array, b: Array, lo: Array, fall: Array) -> Array:
         """A better lower bound over [a, b] where the distance may jump there: that of both sides of the jump."""
@@ -189,6 +213,11 @@ class _Search:
         result = lo.copy()
         result[jumping] = np.maximum(lo[jumping], sides)
         return result
+
+
+def _leading(empty: Mask) -> Index:
+    """How many segments (k, n) of each ray are empty before the first that is not."""
+    return np.asarray(np.where(empty.all(axis=0), empty.shape[0], np.argmin(empty, axis=0)), np.intp)
 
 
 def _proved(rays: Rays, value: Array, fall: Array) -> Array:

@@ -16,10 +16,11 @@ float trace(vec3 o, vec3 d, float start, float limit) {
         float fall = -piece.z;
         bool is_clear = piece.x > 0.0 || fall * reach < v;
 {% endif %}
-        float step = max(v, is_clear ? reach : (v - 0.5 * eps) / max(fall, 1e-6)) * 0.9999996;
-        bool found = v <= eps;
-        s = {{ parameter.growth }} * step;
-        t += found ? 0.0 : step;
+        bool found = v <= eps && !is_clear;
+        float root = max(found ? v : v - 0.5 * eps, 0.0) / max(fall, 1e-6);
+        float clear = max(is_clear ? reach : root, found ? 0.0 : v) * 0.9999996;
+        s = {{ parameter.growth }} * clear;
+        t += clear;
         steps += 1.0;
         evaluations += 2.0;  // the value, and what bounds it
         count += 1;

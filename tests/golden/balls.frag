@@ -228,7 +228,7 @@ Surface unpainted_material(vec4 field, float sunk) {
 }
 
 Surface surface(vec3 p, vec3 d, float fine) {
-    vec3 back = -4.0 * fine * d;
+    vec3 back = -8.0 * fine * d;
     p += back;
     float sunk = 3.0 * fine;  // what is marched, in an intersection
     Surface s1 = unpainted_material(torus_surface(p, 0.52223295, 0.17407766), sunk);

@@ -285,7 +285,7 @@ Surface blended(Surface a, Surface b, vec3 w, float sunk) {
 }
 
 Surface surface(vec3 p, vec3 d, float fine) {
-    vec3 back = -4.0 * fine * d;
+    vec3 back = -8.0 * fine * d;
     p += back;
     Surface s1 = red_material(sphere_distance_surface(p, 0.47555065), 0.0);
     Surface s2 = blue_material(box_distance_surface(p, vec3(1.1888766, 0.356663, 0.356663)), 0.0);

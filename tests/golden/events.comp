@@ -214,7 +214,7 @@ Surface unpainted_material(vec4 field, float sunk) {
 }
 
 Surface surface(vec3 p, vec3 d, float fine) {
-    vec3 back = -4.0 * fine * d;
+    vec3 back = -8.0 * fine * d;
     p += back;
     Surface s1 = unpainted_material(box_surface(p, vec3(1.1547005)), 0.0);
     s1 = farther(s1, unpainted_material(sphere_surface(p, 0.6928203), 0.0));

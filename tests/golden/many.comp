@@ -299,7 +299,7 @@ Surface unpainted_material(vec4 field, float sunk) {
 }
 
 Surface surface(vec3 p, vec3 d, float fine) {
-    vec3 back = -4.0 * fine * d;
+    vec3 back = -8.0 * fine * d;
     p += back;
     vec4 field_sphere_at = sphere_surface(p - sphere_at, sphere_radius);
     Surface s1 = unpainted_material(field_sphere_at, 0.0);

@@ -162,7 +162,7 @@ Surface glass_material(vec4 field, float sunk) {
 }
 
 Surface surface(vec3 p, vec3 d, float fine) {
-    vec3 back = -4.0 * fine * d;
+    vec3 back = -8.0 * fine * d;
     p += back;
     Surface s1 = unpainted_material(plane_surface(p, vec3(0.0, 1.0, 0.0), -0.57735026), 0.0);
     s1 = nearer(s1, glass_material(sphere_surface(p, 0.57735026), 0.0));

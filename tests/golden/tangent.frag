@@ -202,7 +202,7 @@ Surface unpainted_material(vec4 field, float sunk) {
 }
 
 Surface surface(vec3 p, vec3 d, float fine) {
-    vec3 back = -4.0 * fine * d;
+    vec3 back = -8.0 * fine * d;
     p += back;
     vec3 q_rounded_box_1 = vec3(0.8660254 * p.x + (-0.5 * p.z), p.y, 0.5 * p.x + 0.8660254 * p.z);
     vec4 g_rounded_box_1 = rounded_box_surface(q_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), param_edge * 0.9886885);  // test.sdf:2:9

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from sdfc import pipeline
 from sdfc.api.renderer import GlRenderer
 from sdfc.api.request import RequestError
-from sdfc.diagnostics import DeviceError, scene_error
+from sdfc.diagnostics import DeviceError, Source, scene_error
 from sdfc.measure.bench import entrants, tables
 from sdfc.measure.bench.answers import RayDrawing
 from sdfc.measure.bench.judged import court
 from sdfc.measure.bench.plan import FLOOR, Sweep, Wanted
 from sdfc.measure.bench.record import Cell, Record
 from sdfc.measure.bench.report import report
-from sdfc.measure.bench.run import bench
+from sdfc.measure.bench.run import bench, opened
 from sdfc.measure.bench.store import RESULTS, Store, read
 
 pytestmark = pytest.mark.gpu
@@ -28,7 +29,7 @@ pytestmark = pytest.mark.gpu
 ROOT = Path(__file__).parent.parent.parent
 SIZE = (64, 36)
 BALL = "camera { eye: [0, 0, 5], target: [0, 0, 0], fov: 30deg } scene { sphere(radius: 1) }"
-BLOB = "scene { smooth_union(sphere(radius: 1), box(size: [1, 1, 3]), radius: 0.3) }"
+BLOB = "scene { union(sphere(radius: 1), box(size: [1, 1, 3]), blend: 0.3) }"
 CELLS = 2 * (2 * 2 + 1) + 2  # of `wanted`: two tolerances, a floor; a budget on one scene
 
 Measure = Callable[[Wanted], Store]
@@ -72,8 +73,8 @@ def measure(tmp_path: Path) -> Measure:
 def test_what_is_kept_is_not_measured_again(wanted: Wanted, measure: Measure, tmp_path: Path) -> None:
     first = measure(wanted).records
     assert len(first) == wanted.cells == CELLS
-    assert measure(wanted).records == {c: replace(r) for c, r in read(tmp_path / "kept").records.items()}
-    assert {c: r.when for c, r in read(tmp_path / "kept").records.items()} == {c: r.when for c, r in first.items()}
+    second = measure(wanted).records
+    assert {c: r.to_json() for c, r in second.items()} == {c: r.to_json() for c, r in first.items()}
     (tmp_path / "ball.sdf").write_text(BALL.replace("radius: 1", "radius: 0.9"))
     again = measure(wanted).records
     assert {c.scene for c in again if again[c].key != first[c].key} == {"ball.sdf"}
@@ -130,8 +131,8 @@ def smaller(wanted: Wanted, tmp_path: Path) -> Wanted:
 
 def test_planted_errors_are_counted_exactly(smaller: Wanted, measure: Measure, tmp_path: Path) -> None:
     record = measure(smaller).records[Cell("ball.sdf", "foreign:smaller.frag", "64x36")]
-    with _renderer() as renderer:
-        compiled = entrants.entrant(_scene(tmp_path / "ball.sdf"), "proven", None, renderer)
+    with opened() as renderer:
+        compiled = entrants.entrant(pipeline.load(Source("ball.sdf", BALL)), "proven", None, renderer)
         assert isinstance(compiled, entrants.Traced)
         judge = court(compiled.compiled, RayDrawing(renderer.device, compiled.compiled.vertex()), SIZE)
         o, d, radius = judge.unanswered.o, judge.unanswered.d, compiled.compiled.plan.radius
@@ -142,8 +143,9 @@ def test_planted_errors_are_counted_exactly(smaller: Wanted, measure: Measure, t
     assert (grid.false, grid.early) == (0, 0)
     assert grid.late == int((sure & (nearest < 0.8)).sum()) > 100
     assert record.work is not None and (record.work.steps_mean, record.work.evaluations_mean) == (3.0, 2.0)
-    away = np.sqrt(1.0 - nearest**2, where=nearest < 1.0) - np.sqrt(0.64 - nearest**2, where=nearest < 0.8)
-    pixels = (away / radius / (2.0 * judge.cone[1] * judge.truth.t))[sure & (nearest < 0.8)]
+    both = sure & (nearest < 0.8)
+    away = np.sqrt(1.0 - nearest[both] ** 2) - np.sqrt(0.64 - nearest[both] ** 2)
+    pixels = away / radius / (2.0 * judge.cone[1] * judge.truth.t[both])
     assert grid.mean_pixels == pytest.approx(pixels.mean(), rel=1e-4)
     assert grid.pixels.maximum == pytest.approx(pixels.max(), rel=1e-4)
 
@@ -178,7 +180,7 @@ def test_a_distance_without_macros_is_what_sphere_marches(wanted: Wanted, measur
 )
 def test_foreign_mistakes(wanted: Wanted, measure: Measure, tmp_path: Path, text: str, message: str) -> None:
     (tmp_path / "bad.frag").write_text(text)
-    with pytest.raises(RequestError, match="bad.frag") as caught:
+    with pytest.raises(RequestError, match=r"bad\.frag") as caught:
         measure(replace(wanted, scenes=wanted.scenes[:1], foreign=(tmp_path / "bad.frag",)))
     assert message in str(caught.value)
 
@@ -188,16 +190,16 @@ def test_a_colour_is_judged_by_its_alpha(wanted: Wanted, measure: Measure, tmp_p
     (tmp_path / "flat.frag").write_text(hit)
     (tmp_path / "opaque.frag").write_text("out vec4 c; void main() { c = vec4(1.0); }")
     shaders = (tmp_path / "flat.frag", tmp_path / "opaque.frag")
-    found = {c.tracer: r for c, r in measure(replace(wanted, scenes=wanted.scenes[:1], foreign=shaders)).records.items()}
+    found = {
+        c.tracer: r for c, r in measure(replace(wanted, scenes=wanted.scenes[:1], foreign=shaders)).records.items()
+    }
     flat, opaque = found["foreign:flat.frag"], found["foreign:opaque.frag"]
     assert flat.wrong == 0 and flat.errors["grid"].hits == found["proven"].errors["grid"].hits
     assert flat.work is None and np.isnan(flat.p99)
     assert opaque.errors == {} and opaque.timing is not None
 
 
-def test_a_tracer_that_is_not_legal_says_so(
-    wanted: Wanted, measure: Measure, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_tracer_that_is_not_legal_says_so(wanted: Wanted, measure: Measure, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = entrants.asked
 
     def refused(scene: object, spec: str, renderer: GlRenderer) -> object:
@@ -229,11 +231,8 @@ def test_results_survive_the_file(wanted: Wanted, measure: Measure, tmp_path: Pa
     store = measure(wanted)
     kept = read(tmp_path / "kept")
     assert kept.text() == store.text() == (tmp_path / "kept" / RESULTS).read_text()
-    assert [Record.from_json(json.loads(json.dumps(r.to_json()))) for r in kept.records.values()] == pytest.approx(
-        list(kept.records.values()), nan_ok=True
-    ) or all(
-        Record.from_json(r.to_json()).to_json() == r.to_json() for r in kept.records.values()
-    )
+    for record in kept.records.values():
+        assert json.dumps(Record.from_json(record.to_json()).to_json()) == json.dumps(record.to_json())
     assert tables.page(kept).count("\n| proven") == 2 * 2 + 1
 
 
@@ -250,30 +249,9 @@ def test_comparing(wanted: Wanted, measure: Measure) -> None:
     assert not tables.comparison(after, before)[1]
 
 
-def test_the_page_is_what_the_kept_results_make() -> None:
-    page = ROOT / "docs" / "benchmarks.md"
+def test_the_page_is_what_the_kept_results_make(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    page = Path("docs/benchmarks.md")
     text = page.read_text()
-    folder = Path(text.split("--report ", 1)[1].split(" ", 1)[0])
-    made = report(read(ROOT / folder), ROOT / folder, page)
-    assert text == made.replace(str(ROOT) + "/", "")
-
-
-def _scene(path: Path) -> entrants.Scene:
-    from sdfc import pipeline
-    from sdfc.api.source import from_path
-
-    given = from_path(path)
-    return pipeline.load(given.source, given.folder, given.kind)
-
-
-class _renderer:
-    def __enter__(self) -> GlRenderer:
-        self._made = GlRenderer()
-        return self._made
-
-    def __exit__(self, *_: object) -> None:
-        self._made.close()
-
-
-def _unused() -> Iterator[None]:
-    yield None
+    folder = Path(text.split("--report ", 1)[1].split(" ", 1)[0])  # the page says what it was made from
+    assert text == report(read(folder), folder, page)

@@ -72,8 +72,8 @@ def keinert(
 
 
 @np.errstate(all="ignore")
-def bisected_enhanced(f: Along, t_max: float, *, omega: float = 1.0, most: int = 128) -> Told:
-    """The step of Balint and Valasek 2018 with omega 1, with the test of balls that meet exactly as it is stated."""
+def enhanced(f: Along, t_max: float, *, omega: float = 1.0, most: int = 128) -> Told:
+    """The step of Balint and Valasek 2018 at omega 1, and its test as it is stated: do the balls meet?"""
     told = Told()
     t = r = z = F(0.0)
     for _ in range(most):

@@ -70,7 +70,7 @@ def test_no_ray_meets_anything_before_its_tile_starts(name: str, view: str, trac
         assert early.size == 0 or early.min() > -4e-6 * max(1.0, float(reach[hit].max())), f"{early.min():.1e}"
 
 
-@pytest.mark.parametrize("tracer", list(TRACERS))
+@pytest.mark.parametrize("tracer", [n for n, t in TRACERS.items() if t.guarantee.startswith("nothing missed")])
 @pytest.mark.parametrize("name", ["rods", "floor", "aboard", "column.sdf"])
 def test_pictures_are_the_same(name: str, tracer: str, tracing: Tracing) -> None:
     plain = scene(name, tracer)

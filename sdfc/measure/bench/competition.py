@@ -20,7 +20,7 @@ from sdfc.measure.bench.foreign import Foreign, foreign
 from sdfc.measure.bench.judged import Court, court
 from sdfc.measure.bench.machine import now
 from sdfc.measure.bench.plan import FLOOR, FOREIGN, Group, Wanted
-from sdfc.measure.bench.record import Building, Cell, Errors, Record
+from sdfc.measure.bench.record import Cell, Errors, Record
 from sdfc.measure.bench.store import Store
 from sdfc.pipeline import Compiled, Options
 from sdfc.scene.model import Scene
@@ -42,7 +42,7 @@ class Competition:
     renderer: GlRenderer
     kept: Store
     _competitors: dict[tuple[str, int | None], Legal | Illegal] = field(default_factory=dict)
-    _buildings: dict[tuple[str, int | None], Building] = field(default_factory=dict)
+    _firsts: dict[tuple[str, int | None], contest.FirstDraw] = field(default_factory=dict)
     _courts: dict[str, Court] = field(default_factory=dict)
     _base: Compiled | None = None
 
@@ -111,26 +111,26 @@ class Competition:
                         drawings[name] = self._first(stack, legal, group)
             taken = contest.frame_times(drawings, self.wanted.repeat)
             for name, legal in due.items():
-                answers = self._answers(legal, drawings[name])
+                answers, first = self._answers(legal, drawings[name]), self._firsts[name, group.budget]
+                timing = contest.timing(taken[name], taken.get(group.reference, ()))
                 record = Record(
                     group.cell(name),
                     self._key(group, legal.text),
                     now(),
                     self.kept.machine["commit"],
                     legal.note,
-                    timing=contest.timing(taken[name], taken.get(group.reference, ())),
-                    building=self._buildings[name, group.budget],
+                    timing=timing,
+                    building=contest.building(legal.costs, first, timing.median, len(legal.text)),
                     work=contest.work(answers) if answers is not None and legal.reply is Reply.DEPTH else None,
                     errors={} if answers is None else self._errors(legal, group, answers),
                 )
                 finished(record.cell, record)
 
     def _first(self, stack: ExitStack, legal: Entrant, group: Group) -> Drawing:
-        """A drawing whose program has been drawn; what that took longer than the next frame is noted the first time."""
+        """A drawing whose program has been drawn once; what that took is noted the first time."""
         drawing, front_end = timed(lambda: stack.enter_context(legal.drawing(self.size, group.tolerance)))
-        first, second = timed(drawing.draw)[1], timed(drawing.draw)[1]
-        made = contest.building(legal.costs, front_end, first, second, len(legal.text))
-        self._buildings.setdefault((legal.name, group.budget), made)
+        first = contest.FirstDraw(front_end, timed(drawing.draw)[1])
+        self._firsts.setdefault((legal.name, group.budget), first)
         return drawing
 
     def _answers(self, legal: Entrant, drawing: Drawing) -> Answers | None:

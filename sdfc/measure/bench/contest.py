@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,8 +12,16 @@ from sdfc.measure.bench.answers import Answers
 from sdfc.measure.bench.entrants import Drawing, timed
 from sdfc.measure.bench.record import Building, Timing, Work
 
-FEWEST = 3  # rounds, however long they take
-PATIENCE = 12.0  # seconds of rounds; then no more are begun
+FEWEST = 2  # rounds, however long they take
+PATIENCE = 10.0  # seconds of rounds; then no more are begun
+
+
+@dataclass(frozen=True, slots=True)
+class FirstDraw:
+    """Milliseconds that a program took until it could be drawn, and to be drawn for the first time."""
+
+    front_end: float
+    draw: float
 
 
 def frame_times(drawings: Mapping[str, Drawing], most: int, patience: float = PATIENCE) -> dict[str, list[float]]:
@@ -30,12 +39,14 @@ def frame_times(drawings: Mapping[str, Drawing], most: int, patience: float = PA
 def timing(taken: Sequence[float], reference: Sequence[float]) -> Timing:
     """Of one competitor's frames, beside the reference's."""
     low, median, high = np.quantile(taken, [0.25, 0.5, 0.75])
-    return Timing(float(median), float(low), float(high), len(taken), float(np.median(reference)))
+    beside = float(np.median(reference)) if reference else float("nan")
+    return Timing(float(median), float(low), float(high), len(taken), beside)
 
 
-def building(costs: Mapping[str, float], front_end: float, first: float, frame: float, length: int) -> Building:
-    """What came before the first picture; all but `length` in milliseconds."""
-    return Building(costs.get("compile", 0.0), costs.get("emit", 0.0), front_end, max(0.0, first - frame), length)
+def building(costs: Mapping[str, float], first: FirstDraw, frame: float, length: int) -> Building:
+    """What came before the first picture; milliseconds, all but `length`. `frame`: what later frames took."""
+    slower = max(0.0, first.draw - frame)
+    return Building(costs.get("compile", 0.0), costs.get("emit", 0.0), first.front_end, slower, length)
 
 
 def work(answers: Answers) -> Work:

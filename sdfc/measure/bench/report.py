@@ -19,19 +19,20 @@ _PLOTS = (
 )
 
 
-def report(store: Store, folder: Path, page: Path | None) -> str:
-    """The page, with links as they are from where it is kept (None: from the folder of the results)."""
+def report(store: Store, folder: Path, page: Path) -> str:
+    """The page, with links as they are from where it is kept (`-`: from here)."""
     results = Results(store)
-    where = Path(os.path.relpath(folder, page.parent if page is not None else folder))
-    parts = [*_opening(store, folder, where), *_times(results), *_errors(results), *_worst(results), *_planner(results)]
+    where = Path(os.path.relpath(folder, page.parent))
+    parts = [*_opening(store, folder, page), *_times(results), *_errors(results), *_worst(results), *_planner(results)]
     parts += [*findings.budgets(results), *findings.keinert(results)]
     pictures = [*_PLOTS, *findings.PLOTS, *((p.name, p.name) for p in sorted(folder.glob("*.steps.png")))]
     shown = [f"![{text}]({(where / name).as_posix()})" for name, text in pictures if (folder / name).exists()]
     return "\n\n".join([*parts, *(["## Pictures", *shown] if shown else [])]) + "\n"
 
 
-def _opening(store: Store, folder: Path, where: Path) -> Iterator[str]:
-    command = f"sdfc bench --report {folder.as_posix()} -o docs/benchmarks.md"
+def _opening(store: Store, folder: Path, page: Path) -> Iterator[str]:
+    command = f"sdfc bench --report {folder.as_posix()} -o {page.as_posix()}"
+    where = Path(os.path.relpath(folder, page.parent))
     readme = folder.parent.parent / "README.md"  # of bench/
     link = Path(os.path.normpath(where / ".." / ".." / "README.md")).as_posix()
     more = (

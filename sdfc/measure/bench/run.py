@@ -15,6 +15,7 @@ from sdfc.measure.bench.competition import Competition
 from sdfc.measure.bench.plan import Wanted
 from sdfc.measure.bench.record import Cell, Record
 from sdfc.measure.bench.store import Store
+from sdfc.scene.model import Scene
 
 Progress = Callable[[int, int, str], None]  # cells done, cells in all, the last one
 Note = Callable[[str], None]
@@ -59,9 +60,8 @@ def bench(wanted: Wanted, folder: Path | None, progress: Progress, note: Note) -
             kept.add(record)
         progress(done, wanted.cells, str(cell))
 
-    for path in wanted.scenes:
-        given = from_path(path)
-        scene = pipeline.load(given.source, given.folder, given.kind)
+    scenes = {path: _loaded(path) for path in wanted.scenes}  # what is wrong with one is said before all is measured
+    for path, scene in scenes.items():
         for size in wanted.sizes:
             with opened() as renderer:
                 competition = Competition(wanted, path.name, scene, size, renderer, kept)
@@ -69,3 +69,8 @@ def bench(wanted: Wanted, folder: Path | None, progress: Progress, note: Note) -
                 if folder is not None:
                     heat.draw(competition, folder, note)
     return kept
+
+
+def _loaded(path: Path) -> Scene:
+    given = from_path(path)
+    return pipeline.load(given.source, given.folder, given.kind)
