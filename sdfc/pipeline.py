@@ -14,6 +14,7 @@ from sdfc.facts.bounds import Bounds
 from sdfc.facts.bend import Bends
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.ranges import Ranges
+from sdfc.passes.fence import fence
 from sdfc.passes.flatten import flatten
 from sdfc.passes.negate import negate
 from sdfc.passes.own_origin import Frame, frame_of, own_origin
@@ -24,7 +25,7 @@ from sdfc.passes.recognise import recognise
 from sdfc.plan.plan import Plan
 from sdfc.plan.prove import Prover, Rays
 from sdfc.plan.setting import Setting, setting_of
-from sdfc.plan.view import CameraChange, uniforms_of
+from sdfc.plan.view import CameraChange, pixel_at, target_of, uniforms_of
 from sdfc.scene.library import Library
 from sdfc.scene.model import Scene
 from sdfc.shape.graph import Shape
@@ -110,6 +111,7 @@ PASSES = (
     ),
     Pass("flatten", "fewer nodes for every pass that follows", lambda s, w: flatten(s, w.scene.shapes)),
     Pass("paint", "while `a - b` still tells which part is cut", lambda s, w: paint(s, w.scene.shapes)),
+    Pass("fence", "the scene's size is asked for next", lambda s, w: fence(s, w.scene.shapes, w.bounds)),
     Pass("own_origin", "before transforms are composed: one more to compose", lambda s, w: w.framed(s)),
     Pass("place", "leaves must be placed to be bounded", lambda s, w: place(s, w.scene.shapes, w.scene.values)),
     Pass(
@@ -184,6 +186,11 @@ class Compiled:
     ) -> dict[str, float | tuple[float, ...]]:
         """Values for every uniform of the shaders, made in float64."""
         return uniforms_of(self.scene, self.setting, self.frame, view, params, size, jitter)
+
+    def pixel(self, view: CameraChange, params: Mapping[str, tuple[float, ...]], size: tuple[int, int]) -> float:
+        """How wide a pixel is where the camera looks, in the scene's own unit, which is its radius."""
+        values = {p.name: p.default for p in self.scene.params} | dict(params)
+        return pixel_at(target_of(self.setting, view, values), self.frame, self.uniforms(view, params, size))
 
     def explanation(self) -> str:
         """What was proved of the scene and how it will be traced, with reasons."""

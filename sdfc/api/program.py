@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 BACKENDS = ("auto", "gl", "cpu")
 DEFAULT_SIZE = (1280, 720)
 DEFAULT_TRACER = AUTO
+FLOAT32 = 2.0**-22  # of the scene's radius: what hits are right to (plan.GROW)
+FEWEST_DIGITS = 4.0 * FLOAT32  # the narrowest pixel that float32 is good for
 
 
 class Program:
@@ -123,6 +125,8 @@ class Program:
         renderer = self._renderer(backend, note)
         compiled = self._chosen(checked_tracer(tracer), renderer, size[0] * size[1] * samples)
         shot = Shot(compiled, camera or View(), values, size)
+        if isinstance(renderer, GlRenderer):
+            _note_digits(shot, note)
         passes = samples + bool(wanted)
         colour = _accumulated(renderer, shot, [_part(progress, sample, passes) for sample in range(samples)])
         kept = _aovs(renderer, shot, wanted, _part(progress, samples, passes)) if wanted else {}
@@ -180,6 +184,16 @@ def _opened(backend: str, note: Callable[[str], None]) -> Renderer:
     from sdfc.api.cpu import CpuRenderer
 
     return CpuRenderer()
+
+
+def _note_digits(shot: Shot, note: Callable[[str], None]) -> None:
+    """Say so where float32 has not enough digits for what is looked at: small things in a scene that is very large."""
+    pixel, radius = shot.compiled.pixel(shot.view, shot.params, shot.size), shot.compiled.frame.radius
+    if pixel < FEWEST_DIGITS:
+        note(
+            f"a pixel is {pixel * radius:.2g} wide where the camera looks, but in a scene with a radius of {radius:.3g} "
+            f"float32 is right to {FLOAT32 * radius:.2g}: expect faults (--backend cpu has float64)"
+        )
 
 
 def _close_all(renderers: dict[str, Renderer]) -> None:

@@ -15,7 +15,6 @@ Read with the value: f(q + tau d) lies between f(q) + lo tau and f(q) + hi tau u
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from sdfc.field.graph import Expr, FieldGraph, topological
@@ -79,8 +78,3 @@ def _track(root: Expr, p: Expr, walk: Walk) -> Track:
             tracks[node.id] = walk.still(node)
     (track,) = tracks[root.id]
     return track
-
-
-def operations(roots: Iterable[Expr]) -> int:
-    """How many numbers the expressions compute."""
-    return sum(node.type.size for node in topological(roots) if node.args)

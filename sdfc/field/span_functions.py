@@ -1,4 +1,4 @@
-"""Functions, steps, powers and angles of tracks: the part of `span_rules` where operations have formulas of their own."""
+"""Functions, steps, powers and angles of tracks: where `span_rules` has formulas of an operation's own."""
 
 from __future__ import annotations
 

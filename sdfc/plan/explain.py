@@ -80,6 +80,6 @@ def _left_out(part: Part) -> str:
 
 def _bend(step: Ball) -> str:
     if step.bend is None:
-        return ": how it bends is not known"
+        return ": no parabola below it is known that pays"
     worst = f"at most {step.bend.number:.4g}" if step.bend.is_constant else "no more than the params' values say"
     return f", and parabolas: it bends down by {worst}"

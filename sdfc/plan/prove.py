@@ -184,7 +184,7 @@ class Prover:
         if self._bends is None or not leaf.inside or not where.is_finite:
             return Ball(part, lipschitz, leaf.inside)
         own = where if leaf.affine is None else self._bounds.moved(leaf.affine.inverse, where)
-        return Ball(part, lipschitz, leaf.inside, self._bends.bound(leaf.shape, own))
+        return Ball(part, lipschitz, leaf.inside, self._bends.worthwhile(leaf.shape, own, lipschitz))
 
     def _within(self, box: Box, step: Step, needed: bool) -> Within:
         self._boxes += 1

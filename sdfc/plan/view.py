@@ -65,13 +65,26 @@ def uniforms_of(
     return uniforms
 
 
+def pixel_at(target: Vector, frame: Frame, uniforms: Mapping[str, float | tuple[float, ...]]) -> float:
+    """How wide a pixel is at `target` (as the author wrote it), in the scene's own unit."""
+    eye, pixel = uniforms["eye"], uniforms["pixel"]
+    assert isinstance(eye, tuple) and isinstance(pixel, tuple)
+    own = [(t - c) / frame.radius for t, c in zip(target, frame.centre, strict=True)]
+    return 2.0 * (pixel[0] + pixel[1] * math.dist(eye, own))
+
+
+def target_of(setting: Setting, view: CameraChange, params: Mapping[str, tuple[float, ...]]) -> Vector:
+    """What the camera looks at, in the scene's units."""
+    return view.target or _three(values_of(setting.camera.target, params))
+
+
 def _camera(
     setting: Setting, view: CameraChange, values: Mapping[str, tuple[float, ...]]
 ) -> tuple[Vector, tuple[Vector, Vector, Vector], float | None]:
     """Eye, the axes (right, up, ahead), and the height where the camera is orthographic; in the scene's units."""
     camera = setting.camera
     eye = view.eye or _three(values_of(camera.eye, values))
-    target = view.target or _three(values_of(camera.target, values))
+    target = target_of(setting, view, values)
     up = view.up or _three(values_of(camera.up, values))
     height = view.height
     if height is None and camera.height is not None and view.fov is None:

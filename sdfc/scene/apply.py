@@ -46,7 +46,7 @@ def apply(
     """A field with what it is given: the shape it makes. `receiver` holds the chained shape, or a block's."""
     given = [*receiver, *(gather(call.arguments, names) if arguments is None else arguments)]
     children = definition.children
-    order = [p.name for p in (*children, *definition.values)]
+    order = [p.name for p in (*children, *definition.values) if p.found is None]
     what = definition.name.removesuffix(IN_PLANE)
     matched = match(what, order, given, call.name.span, most_positional=len(children) + 1)
     missing = [p.name for p in definition.parameters if p.default is None and p.name not in matched]
@@ -94,7 +94,8 @@ def _values(definition: Definition, matched: dict[str, Given], names: Names, pla
             elif parameter.default is not None:
                 environment[parameter.name] = parameter.default(environment)
             span = place if given is None else given.span
-            check(parameter, environment[parameter.name], span, names.context)
+            if parameter.found is None:
+                check(parameter, environment[parameter.name], span, names.context)
         except SceneError as error:
             problems.take(error)
     problems.finish()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 from sdfc.diagnostics import Diagnostic, SceneError, Span, scene_error
 from sdfc.field.graph import Expr, FieldGraph, Type
@@ -39,6 +40,7 @@ from sdfc.syntax.walk import mentions
 
 _RESERVED = {"p": "the point", "level": "a level", "o": "a ray's origin", "d": "a ray's direction", "grow": "a ray's"}
 IN_PLANE = "_in_plane"  # behind the name of an operation on solids: its twin for shapes in the plane
+_Found: TypeAlias = Callable[[Environment, Mapping[str, ChildFacts]], Argument]
 _ONCE = ("exact", "bound", "convex", "homogeneous", "lipschitz", "bounds", "gauge", "ray", "lowering", "dual")
 
 
@@ -202,10 +204,12 @@ class _Maker:
                 raise scene_error(f"'{limit.operator}' is no limit", limit.span, "use < <= > or >=")
         if kind.is_child and (limits or declared.default is not None):
             raise scene_error("a shape has no limits and no default", declared.span)
+        found = self._found(declared, kind)
         return Parameter(
             name=declared.name.text,
             kind=kind,
-            default=None if declared.default is None else self._default(declared.default, kind),
+            default=None if declared.default is None else self._default(declared.default, kind, found),
+            found=found,
             minimum=limits.get(">", limits.get(">=")),
             above=">" in limits,
             maximum=limits.get("<", limits.get("<=")),
@@ -218,11 +222,32 @@ class _Maker:
             raise scene_error("a limit must be a number", limit.value.span)
         return value.number
 
-    def _default(self, node: tree.Expression, kind: Kind) -> Callable[[Environment], Argument]:
+    def _default(self, node: tree.Expression, kind: Kind, found: _Found | None) -> Callable[[Environment], Argument]:
         def default(environment: Environment) -> Argument:
+            if found is not None:
+                return found(environment, self._endless())
             return conform(evaluate(node, self.scope(environment, ())), kind, node.span)
 
         return default
+
+    def _found(self, declared: tree.FieldParameter, kind: Kind) -> _Found | None:
+        """The default as a function of the children's facts, where it asks for any."""
+        node = declared.default
+        if node is None or not mentions(node).used.intersection(n for n, k in self.kinds.items() if k.is_child):
+            return None
+        if declared.limits:
+            raise scene_error("what is found from a shape has no limits", declared.span)
+
+        def found(environment: Environment, facts: Mapping[str, ChildFacts]) -> Argument:
+            return conform(evaluate(node, self.scope(environment, (), facts=facts)), kind, node.span)
+
+        return found
+
+    def _endless(self) -> dict[str, ChildFacts]:
+        """Facts of children of which nothing is known."""
+        sizes = {name: 2 if kind is Kind.PROFILE else 3 for name, kind in self.kinds.items() if kind.is_child}
+        ends = {name: self.graph.constant(*[math.inf] * size) for name, size in sizes.items()}
+        return {name: ChildFacts(-end, end, self.graph.constant(1.0)) for name, end in ends.items()}
 
 
 def _value(claim: tree.Claim) -> tree.Expression:

@@ -61,11 +61,16 @@ class Exactness(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter of a definition. `minimum` holds component by component; `above` says that it is excluded."""
+    """A parameter of a definition. `minimum` holds component by component; `above` says that it is excluded.
+
+    One that is `found` cannot be given: it is made of the children's boxes, once they are known (passes/fence.py).
+    Until then it has its default, made of boxes without end.
+    """
 
     name: str
     kind: Kind
     default: Callable[[Environment], Argument] | None = None  # may use earlier parameters
+    found: Callable[[Environment, Mapping[str, ChildFacts]], Argument] | None = None
     minimum: float | None = None
     above: bool = False
     maximum: float | None = None

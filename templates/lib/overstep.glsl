@@ -22,13 +22,17 @@ float trace(vec3 o, vec3 d, float start, float limit) {
         bool nearer = meets && v < r && v < least * eps;
         best = nearer ? at : best;
         least = nearer ? v / eps : least;
-        float next = v * haste(slope, z > 0.0 ? clamp((v - r) / z, -1.0, 0.99) : -1.0);
-        slope = meets ? slope : -1.0;
+        float measured = z > 0.0 ? clamp((v - r) / z, -1.0, 0.99) : -1.0, next = v * haste(slope, measured);
         bool closes = flips && gap >= -eps;
+        slope = meets ? slope : -1.0;
         bool found = meets ? v <= eps : closes || r <= eps || flips && z <= eps;
         z = meets ? next : flips ? 0.5 * z : r;
         t = meets ? at : closes ? t + r : t;
-        r = meets ? v : closes ? 0.0 : r;
+{% if parameter.reduce != "0.0" %}
+        slope = closes ? measured : slope;
+        r = closes ? max(r + r * measured, 0.0) : r;
+{% endif %}
+        r = meets ? v : r;
 {% if smoothing %}
         bool last = left == 0;
         left -= found || there ? 1 : 0;

@@ -148,3 +148,14 @@ def test_samples_spread_over_the_pixel_the_centre_first() -> None:
     assert (abs(places) <= 0.5).all()
     counts, _, _ = np.histogram2d(places[:, 0], places[:, 1], bins=4, range=[[-0.5, 0.5]] * 2)
     assert counts.min() >= 2 and counts.max() <= 6
+
+
+def test_a_pixel_that_float32_cannot_resolve_is_noted(gl: None) -> None:
+    text = """camera { eye: [0.02, 0.02, 0.04], target: [0, 0.005, 0], fov: 40deg }
+    scene { sphere(radius: 0.005) box(size: [200, 400, 200]).translate([500, 0, -2000]) }"""
+    notes: list[str] = []
+    with sdfc.compile(text) as program:
+        program.render((320, 180), note=notes.append)
+        program.render((4, 3), note=notes.append, camera=View(eye=(100.0, 9000.0, 0.0)))
+        program.render((4, 3), note=notes.append, backend="cpu")
+    assert len(notes) == 1 and "--backend cpu" in notes[0]

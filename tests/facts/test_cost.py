@@ -30,8 +30,8 @@ def test_more_is_never_cheaper(recipe: Recipe) -> None:
     assert cost([expression]) >= max((cost([a]) for a in expression.args), default=0.0)
 
 
-@pytest.mark.parametrize("dear, cheap", [(Op.SIN, Op.SQRT), (Op.SQRT, Op.ABS)])
+@pytest.mark.parametrize("dear, cheap", [(Op.SIN, Op.SQRT), (Op.SQRT, Op.ADD)])
 def test_dear_functions_cost_more(dear: Op, cheap: Op) -> None:
     graph = FieldGraph()
     x = graph.input("p")[0]
-    assert cost([graph.add(dear, x)]) > cost([graph.add(cheap, x)])
+    assert cost([graph.add(dear, x)]) > cost([graph.add(cheap, *[x, x][: 2 if cheap is Op.ADD else 1])])

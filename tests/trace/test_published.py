@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -13,8 +14,11 @@ from truth import Picture, Tracing, certified, compiled_file, compiled_text, eve
 from sdfc.api.renderer import Shot
 from sdfc.api.request import View
 from sdfc.pipeline import Compiled, Options, compile_scene
-from sdfc.plan.plan import FINE
+from sdfc.plan.plan import FINE, LIFT
+from sdfc.field.numeric import Evaluator
 from sdfc.reference.certify import Certificate
+from sdfc.scene.model import Scene
+from sdfc.shape.lower import lower
 from sdfc.tracers import TRACERS, choice
 
 pytestmark = pytest.mark.gpu
@@ -54,9 +58,13 @@ RAYS = {  # how many are proved: interval arithmetic over hundreds of parts take
 TEXTS = {"rods": RODS, "floor": FLOOR, "far": FAR_AWAY}
 
 
+@cache
+def plain(name: str) -> Scene:
+    return (compiled_text(TEXTS[name]) if name in TEXTS else compiled_file(SCENES / name)).scene
+
+
 def scene(name: str, spec: str, most_steps: int | None = None) -> Compiled:
-    plain = compiled_text(TEXTS[name]) if name in TEXTS else compiled_file(SCENES / name)
-    return compile_scene(plain.scene, Options(spec, most_steps=most_steps))
+    return compile_scene(plain(name), Options(spec, most_steps=most_steps))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,13 +76,17 @@ class Known:
     near: float
 
 
-@cache
+KEPT: dict[tuple[str, float], Known] = {}
+
+
 def known(name: str, tracing: Tracing, least_step: float = 0.0) -> Known:
     """`least_step`: in half pixels, what a tracer may pass over; it loses what is nowhere deeper than half of that."""
-    compiled = scene(name, "sphere")
-    rays = every(tracing.picture(compiled, SIZE), RAYS[name])
-    near = tolerance(compiled, rays, footprint(compiled, SIZE)) * max(1.0, 0.25 * least_step / FINE)
-    return Known(rays, certified(compiled, rays, near), near)
+    if (name, least_step) not in KEPT:
+        compiled = scene(name, "sphere")
+        rays = every(tracing.picture(compiled, SIZE), RAYS[name])
+        near = tolerance(compiled, rays, footprint(compiled, SIZE)) * max(1.0, 0.25 * least_step / FINE)
+        KEPT[name, least_step] = Known(rays, certified(compiled, rays, near), near)
+    return KEPT[name, least_step]
 
 
 def told(name: str, spec: str, tracing: Tracing) -> tuple[Compiled, Picture]:
@@ -86,10 +98,12 @@ def least_step(spec: str) -> float:
     return choice(spec).values.get("min_step", 0.0)
 
 
-@pytest.mark.parametrize("spec", [*TRACERS, *VARIANTS])
-@pytest.mark.parametrize("name", RAYS)
+CASES = [(n, s) for n in RAYS for s in TRACERS] + [(n, s) for n in ("csg5.sdf", "rods", "floor") for s in VARIANTS]
+
+
+@pytest.mark.parametrize(("name", "spec"), CASES)
 def test_what_is_guaranteed(name: str, spec: str, tracing: Tracing) -> None:
-    """Nothing missed, nothing invented, no hit outside its window, outside contested rays and those given up."""
+    """Nothing missed, nothing invented, nothing late, every hit within tolerance, but for contested and given-up rays."""
     proved = known(name, tracing, least_step(spec))
     compiled, picture = told(name, spec, tracing)
     np.testing.assert_array_equal(picture.d, proved.rays.d)
@@ -101,7 +115,12 @@ def test_what_is_guaranteed(name: str, spec: str, tracing: Tracing) -> None:
     print(f"{name} {spec}: {result}")
     bad = wrong(answers, truth)
     assert bad.size == 0, f"{result}\nfirst wrong rays: o {answers.o[:, bad[:3]].T}, d {answers.d[:, bad[:3]].T}"
-    assert (result.sure.early, result.sure.late, result.not_finite) == (0, 0, 0), f"{result}"
+    assert (result.sure.late, result.not_finite) == (0, 0), f"{result}"
+    cone = footprint(compiled, SIZE)
+    enough = np.maximum(0.5 * proved.near, FINE * (cone[0] + cone[1] * answers.depth)) + 4e-6 * (1.0 + answers.depth)
+    value = residuals(compiled, answers.o + answers.depth * answers.d)
+    off = np.flatnonzero(answers.hit & ~truth.contested & ~(np.abs(value) <= enough))
+    assert off.size == 0, f"{value[off[:5]]} where {enough[off[:5]]} is enough"
     assert result.sure.rays > 0.6 * finished.size, "the truth excuses too much"
 
 
@@ -154,10 +173,8 @@ def test_reduced_discontinuities(spec: str, tracing: Tracing) -> None:
 
 def residuals(compiled: Compiled, p: np.ndarray) -> np.ndarray:
     """The field at points (3, n) of the scene's own coordinates, in float64; NaN at NaN."""
-    from sdfc.field.numeric import Evaluator
-    from sdfc.shape.lower import lower
-
-    (values,) = Evaluator([lower(compiled.shape, compiled.scene.values.input("p"))])({"p": p}, {})
+    params = {param.name: param.default for param in compiled.scene.params}
+    (values,) = Evaluator([lower(compiled.shape, compiled.scene.values.input("p"))])({"p": p}, params)
     return np.asarray(values)
 
 
@@ -196,17 +213,22 @@ def test_what_liktor_loses_is_shallow(name: str, tracing: Tracing) -> None:
         assert wrong(picture, plain.truth).size > 0, "nothing is lost: the test has no teeth"
 
 
-def test_a_point_far_below_the_surface_shades_nothing(tracing: Tracing) -> None:
+def test_points_below_the_surface_are_no_shadow(tracing: Tracing) -> None:
     """Keinert 2014, section 3.3: shadow rays clear the surface by twice what the hit is off, not by a constant."""
-    text = "scene { sphere(radius: 1) }\nlight sun { direction: [0, 0, -1], intensity: 3 }\n"
+    text = "scene { sphere(radius: 1) }\nlight sun { direction: [-0.2, -0.3, -1], intensity: 3 }\n"
     text += "camera { eye: [0, 0, 6], target: [0, 0, 0], fov: 30deg }"
-    scene_of = compiled_text(text).scene
-    rough = compile_scene(scene_of, Options("liktor:min_step=4:refinements=0"))
-    shot = Shot(rough, View(), {}, SIZE)
-    with tracing.renderer.prepared(shot, "radiance") as prepared:
-        prepared.draw()
-        lit = prepared.read().astype(float)
-    exact = tracing.renderer.radiance(Shot(compile_scene(scene_of, Options()), View(), {}, SIZE), 0, None).astype(float)
-    inner = (lit[..., 3] > 0.5) & (exact[..., 3] > 0.5) & (exact[..., 0] > 0.5)
+    lit = compiled_text(text).scene
+    rough = compile_scene(lit, Options("liktor:min_step=8:refinements=0"))  # whose hits are as much as half a pixel deep
+    constant, count = re.subn(
+        r"lift = clearance\(.*\);", f"lift = max({LIFT}, 4.0 * tolerance(0.0));", rough.glsl("radiance")
+    )
+    assert count == 1
+    printed = replace(rough, _texts={("radiance", "fragment"): constant})
+    exact, ours, theirs = (
+        tracing.renderer.radiance(Shot(c, View(), {}, SIZE), 0, None).astype(float)
+        for c in (compile_scene(lit, Options()), rough, printed)
+    )
+    inner = (exact[..., 3] > 0.5) & (ours[..., 3] > 0.5)
     assert inner.sum() > 500
-    assert np.abs(lit - exact)[inner][:, :3].max() < 0.1
+    black = [int((np.abs(seen - exact)[inner][:, :3].max(axis=1) > 0.1).sum()) for seen in (ours, theirs)]
+    assert black[0] == 0 and black[1] > 100, black

@@ -42,7 +42,7 @@ class Competition:
     renderer: GlRenderer
     kept: Store
     _competitors: dict[tuple[str, int | None], Legal | Illegal] = field(default_factory=dict)
-    _firsts: dict[tuple[str, int | None], contest.FirstDraw] = field(default_factory=dict)
+    _firsts: dict[str, contest.FirstDraw] = field(default_factory=dict)
     _courts: dict[str, Court] = field(default_factory=dict)
     _base: Compiled | None = None
 
@@ -111,7 +111,7 @@ class Competition:
                         drawings[name] = self._first(stack, legal, group)
             taken = contest.frame_times(drawings, self.wanted.repeat)
             for name, legal in due.items():
-                answers, first = self._answers(legal, drawings[name]), self._firsts[name, group.budget]
+                answers, first = self._answers(legal, drawings[name]), self._firsts[legal.text]
                 timing = contest.timing(taken[name], taken.get(group.reference, ()))
                 record = Record(
                     group.cell(name),
@@ -130,7 +130,7 @@ class Competition:
         """A drawing whose program has been drawn once; what that took is noted the first time."""
         drawing, front_end = timed(lambda: stack.enter_context(legal.drawing(self.size, group.tolerance)))
         first = contest.FirstDraw(front_end, timed(drawing.draw)[1])
-        self._firsts.setdefault((legal.name, group.budget), first)
+        self._firsts.setdefault(legal.text, first)  # a program is built once, whoever else has it
         return drawing
 
     def _answers(self, legal: Entrant, drawing: Drawing) -> Answers | None:

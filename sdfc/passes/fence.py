@@ -1,0 +1,34 @@
+"""What operations ask of their children's boxes is told them, where their values far away matter (ALGORITHMS C3)."""
+
+from __future__ import annotations
+
+from sdfc.facts.bounds import Bounds, child_facts
+from sdfc.passes.rewrite import descend
+from sdfc.shape.graph import Apply, Shape, ShapeGraph, children_of
+
+
+def fence(root: Shape, graph: ShapeGraph, bounds: Bounds) -> Shape:
+    """Afterwards each parameter that is found, of an operation that stands in another, has a value from the boxes of its
+    children, where none of these is empty. The same solid: a warp that is rounded, hollowed out or blended has a field that
+    grows however far away. One that stands alone is looked at only where it is, and is left as it is."""
+
+    def below(shape: Shape, is_operand: bool) -> list[tuple[Shape, bool]]:
+        return [(child, is_operand or isinstance(shape, Apply)) for child in children_of(shape)]
+
+    def make(shape: Shape, is_operand: bool, children: tuple[Shape, ...]) -> Shape:
+        kept = graph.with_children(shape, children)
+        return _found(kept, graph, bounds) if is_operand and isinstance(kept, Apply) else kept
+
+    return descend(root, False, below, make)
+
+
+def _found(shape: Apply, graph: ShapeGraph, bounds: Bounds) -> Shape:
+    """The same with what can be found of its children."""
+    values = shape.definition.values
+    boxes = [bounds.box(child) for child in shape.children]
+    if all(p.found is None for p in values) or any(box.is_empty for box in boxes):
+        return shape
+    facts = child_facts(bounds.values, shape, boxes)
+    pairs = zip(values, shape.arguments, strict=True)
+    arguments = [a if p.found is None else p.found(shape.environment, facts) for p, a in pairs]
+    return graph.apply(shape.definition, arguments, shape.children, shape.span)
