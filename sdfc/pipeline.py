@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Literal
 
 from sdfc.diagnostics import InternalError, SceneError, Source, scene_error
-from sdfc.facts.bounds import Bounds
 from sdfc.facts.bend import Bends
+from sdfc.facts.bounds import Bounds
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.ranges import Ranges
 from sdfc.passes.fence import fence

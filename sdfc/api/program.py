@@ -127,6 +127,8 @@ class Program:
         shot = Shot(compiled, camera or View(), values, size)
         if isinstance(renderer, GlRenderer):
             _note_digits(shot, note)
+        elif not compiled.plan.tracer.needs_steps:
+            note(f"NumPy traces by the step rules of 'proven' alone: '{compiled.plan.tracer.name}' is for OpenGL")
         passes = samples + bool(wanted)
         colour = _accumulated(renderer, shot, [_part(progress, sample, passes) for sample in range(samples)])
         kept = _aovs(renderer, shot, wanted, _part(progress, samples, passes)) if wanted else {}
@@ -191,7 +193,7 @@ def _note_digits(shot: Shot, note: Callable[[str], None]) -> None:
     pixel, radius = shot.compiled.pixel(shot.view, shot.params, shot.size), shot.compiled.frame.radius
     if pixel < FEWEST_DIGITS:
         note(
-            f"a pixel is {pixel * radius:.2g} wide where the camera looks, but in a scene with a radius of {radius:.3g} "
+            f"a pixel is {pixel * radius:.2g} wide where the camera looks, but in a scene of radius {radius:.3g} "
             f"float32 is right to {FLOAT32 * radius:.2g}: expect faults (--backend cpu has float64)"
         )
 

@@ -78,6 +78,7 @@ def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int,
 @click.option("--repeat", type=click.IntRange(1), help="Frames of each, unless they take long. By default 7.")
 @click.option("--grid", callback=_size, metavar="WxH", help="The picture whose every ray is judged. By default 160x90.")
 @click.option("--random", type=click.IntRange(1), help="How many pixels of the timed frame are judged: 2000.")
+@click.option("--all-rays", is_flag=True, help="Judge so many even where their truth takes minutes (chess, temple).")
 @click.option("--backend", default="gl", show_default=True, type=click.Choice(["gl"]), help="What draws.")
 @click.option("--quick", is_flag=True, help="Few scenes, small, one tolerance: a minute.")
 @click.option(
@@ -124,6 +125,8 @@ def _wanted(asked: dict[str, Any]) -> Wanted:
         usual = replace(usual, tracers=checked(asked["tracers"]), swept=())
     if asked["budgets"] is not None and asked["scenes"]:
         usual = replace(usual, budgeted=tuple(path.name for path in asked["scenes"]))
+    if asked["all_rays"]:
+        usual = replace(usual, most=float("inf"))
     same = ("sizes", "tolerances", "budgets", "repeat", "grid", "random", "foreign")
     return replace(usual, **{name: asked[name] for name in same if asked[name]})
 

@@ -56,6 +56,11 @@ class IntervalEvaluator:
         self._nodes = evaluation_order([root])
         self._last_use = _last_uses(self._nodes)
 
+    @property
+    def size(self) -> int:
+        """How many nodes there are: what an evaluation costs."""
+        return len(self._nodes)
+
     def value(
         self,
         inputs: Mapping[str, tuple[ArrayLike, ArrayLike]],

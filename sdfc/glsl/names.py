@@ -59,7 +59,7 @@ window within
 # Locals of templates and of generated statements: no function and no local of an expression may take these.
 _LOCALS = """
 o d p q t next near far eps fine first start limit count steps field light hit view normal toward
-back sunk
+back before ahead sunk
 """
 LOCALS = tuple(_LOCALS.split())
 

@@ -1,4 +1,4 @@
-"""Fields whose bend is bounded: stepped to the root of a parabola below them, or by the empty ball where that is more."""
+"""Fields whose bend is bounded: stepped to the root of a parabola below them, or by the ball where that is more."""
 
 from __future__ import annotations
 

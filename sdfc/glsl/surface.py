@@ -1,8 +1,8 @@
 """What is at a hit: one pass over the tree that keeps the gradient and the material of the part whose surface it is.
 
-Where faces meet within rounding, their values at the hit do not tell which one the ray enters by. So the tree is asked
-a little way back along the ray: from there the face that it enters by is ahead. One that it runs along is not, nor one
-that is buried where two parts touch, whose other part is as near.
+Where faces meet within rounding, their values at the hit do not tell which one the ray enters by. So where there may be
+seams, parts are ranked by their values a little way back along the ray: from there the face that it enters by is ahead.
+One that it runs along is not, nor one that is buried where two parts touch, whose other part is as near.
 """
 
 from __future__ import annotations
@@ -34,11 +34,13 @@ from sdfc.plan.steps import (
     Step,
     Tangent,
     Within,
+    may_have_seams,
 )
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
 
 _BACK = "8.0"  # so far back, in roundings
+_NOWHERE = "0.0"  # what is added to a value to rank it, where nothing is
 _SUNK = "3.0"  # what is marched is sunk so far in an intersection (sdfc/glsl/proven)
 
 PROPERTIES = ("color", "metallic", "roughness", "emission", "transmission", "ior", "tint")
@@ -77,22 +79,20 @@ class SurfaceWriter:
         self._painted = False
         self._declared: set[str] = set()
         self._varying = [p for p in PROPERTIES if len({_property(m, p).id for m in materials}) > 1]
-        self._p = graph.input("p")
+        self._p, self._before = graph.input("p"), graph.input("before")
         self._count = 0
         self._blends = False
+        self._looks_back = False
 
     def write(self, root: Step) -> SurfaceText:
+        self._looks_back = may_have_seams(root)
         body = Body(self._live)
         result = self._fold(root, body)
-        body.add(f"Surface s = {result};")
-        body.add("s.field.w -= dot(s.field.xyz, back);")
-        body.add("return s;")
-        head = [
-            "Surface surface(vec3 p, vec3 d, float fine) {",
-            f"    vec3 back = -{_BACK} * fine * d;",
-            "    p += back;",
-        ]
-        if any("sunk)" in line for line in body.lines):
+        body.add(f"return {result};")
+        head = ["Surface surface(vec3 p, vec3 d, float fine) {"]
+        if self._looks_back:
+            head.append(f"    vec3 back = -{_BACK} * fine * d, before = p + back;")
+        if any("sunk" in line for line in body.lines):
             head.append(f"    float sunk = {_SUNK} * fine;  // what is marched, in an intersection")
         function = "\n".join([*head, *body.lines, "}", ""])
         return SurfaceText(self._structure(), function, self._properties())
@@ -100,13 +100,15 @@ class SurfaceWriter:
     # declarations
 
     def _structure(self) -> str:
-        members = ["vec4 field;  // gradient and value", "float rank;  // the value of what is traced"]
+        members = ["vec4 field;  // gradient and value"]
+        members += ["float rank;  // the value of what is traced, a little way back"] * self._looks_back
         members += ["float material;"]
         members += [f"{type_name(_property(self._materials[0], p).type)} {p};" for p in self._varying]
+        rank = "rank" if self._looks_back else "field.w"
         lines = ["struct Surface {", *(f"    {m}" for m in members), "};", ""]
         lines += [
-            "Surface nearer(Surface a, Surface b) { if (b.rank < a.rank) return b; return a; }",
-            "Surface farther(Surface a, Surface b) { if (b.rank > a.rank) return b; return a; }",
+            f"Surface nearer(Surface a, Surface b) {{ if (b.{rank} < a.{rank}) return b; return a; }}",
+            f"Surface farther(Surface a, Surface b) {{ if (b.{rank} > a.{rank}) return b; return a; }}",
             "",
         ]
         for index, material in enumerate(self._materials):
@@ -117,9 +119,9 @@ class SurfaceWriter:
     def _constructor(self, index: int, material: Material) -> list[str]:
         body = Body(self._live)
         values = body.texts([_property(material, p) for p in self._varying])
-        arguments = ", ".join(["field", "field.w + sunk", f"{index}.0", *values])
+        arguments = ", ".join(["field", *["rank"] * self._looks_back, f"{index}.0", *values])
         return [
-            f"Surface {self._names[id(material)]}(vec4 field, float sunk) {{",
+            f"Surface {self._names[id(material)]}(vec4 field{', float rank' * self._looks_back}) {{",
             *body.lines,
             f"    return Surface({arguments});",
             "}",
@@ -128,18 +130,20 @@ class SurfaceWriter:
 
     def _choice(self) -> list[str]:
         names = [self._names[id(m)] for m in self._materials]
-        chosen = [f"    if (material == {i}.0) s = {name}(field, sunk);" for i, name in enumerate(names) if i]
-        head = "Surface painted(vec4 field, float material, float sunk) {"
-        return [head, f"    Surface s = {names[0]}(field, sunk);", *chosen, "    return s;", "}", ""]
+        rank = ", rank" * self._looks_back
+        chosen = [f"    if (material == {i}.0) s = {name}(field{rank});" for i, name in enumerate(names) if i]
+        head = f"Surface painted(vec4 field{', float rank' * self._looks_back}, float material) {{"
+        return [head, f"    Surface s = {names[0]}(field{rank});", *chosen, "    return s;", "}", ""]
 
     def _mixing(self) -> list[str]:
-        mixed = ["field", "field.w + sunk", "w.y > w.x ? b.material : a.material"]
+        mixed = ["field", *["field.w + ahead"] * self._looks_back, "w.y > w.x ? b.material : a.material"]
         mixed += [f"mix(a.{p}, b.{p}, share)" for p in self._varying]
         return [
             "// a blend: w holds the derivatives by a and b, and the value",
-            "Surface blended(Surface a, Surface b, vec3 w, float sunk) {",
+            f"Surface blended(Surface a, Surface b, vec3 w{', vec3 back, float sunk' * self._looks_back}) {{",
             "    float share = w.y / max(w.x + w.y, 1e-6);",
             "    vec4 field = vec4(w.x * a.field.xyz + w.y * b.field.xyz, w.z);",
+            *["    float ahead = dot(field.xyz, back) + sunk;"] * self._looks_back,
             f"    return Surface({', '.join(mixed)});",
             "}",
             "",
@@ -156,10 +160,10 @@ class SurfaceWriter:
 
     # the tree
 
-    def _fold(self, step: Step, body: Body, sunk: str = "0.0") -> str:
+    def _fold(self, step: Step, body: Body, sunk: str = _NOWHERE) -> str:
         match step:
             case Closed():
-                return self._leaf(step.part, body, step.inside, Role.SURFACE, "0.0")
+                return self._leaf(step.part, body, step.inside, Role.SURFACE, _NOWHERE)
             case Ball():
                 # over its constant: then the gradient says how much of a distance the value is
                 scale = 1.0 / max(step.lipschitz, 1e-9)
@@ -184,7 +188,8 @@ class SurfaceWriter:
     def _joined(self, operation: str, steps: tuple[Step, ...], body: Body, sunk: str) -> str:
         name = self._name()
         if not steps:
-            body.add(f"Surface {name} = {self._names[id(self._materials[0])]}(vec4(0.0, 1.0, 0.0, FAR), 0.0);")
+            far = self._made(self._names[id(self._materials[0])], "vec4(0.0, 1.0, 0.0, FAR)", "FAR")
+            body.add(f"Surface {name} = {far};")
             return name
         body.add(f"Surface {name} = {self._fold(steps[0], body, sunk)};")
         for step in steps[1:]:
@@ -194,17 +199,22 @@ class SurfaceWriter:
 
     def _nearest(self, step: Many, body: Body) -> str:
         if self._many is None:
-            return self._joined("nearer", step.members, body, "0.0")
+            return self._joined("nearer", step.members, body, _NOWHERE)
         field = self._many.surface(step, body)
+        rank = f"{field}.w + dot({field}.xyz, back)"
         if len(self._materials) == 1:
-            return f"{self._names[id(self._materials[0])]}({field}, 0.0)"
+            return self._made(self._names[id(self._materials[0])], field, rank)
         self._painted = True
-        return f"painted({field}, {self._many.record(step).material}, 0.0)"
+        return self._made("painted", field, rank, self._many.record(step).material)
+
+    def _made(self, constructor: str, field: str, rank: str, *more: str) -> str:
+        return f"{constructor}({', '.join([field, *[rank] * self._looks_back, *more])})"
 
     def _leaf(self, part: Part, body: Body, inside: bool, role: Role, sunk: str, scale: float = 1.0) -> str:
         stretch = part.stretch * scale
         q = body.point(own_point(part.inverse, self._p), f"q_{part.name}")
-        field = body.call(self._functions.of_part(part, role), [q])
+        call = self._functions.of_part(part, role)
+        field, sign = body.call(call, [q]), "" if inside else "-"
         if part.inverse is not None and not is_translation(part.inverse):
             name = f"g_{part.name}{'' if role is Role.SURFACE else '_distance'}"
             if name not in self._declared:  # a part may have several places in the tree
@@ -213,11 +223,16 @@ class SurfaceWriter:
             field = body.text(self._turned(part, name, stretch))
         elif not (stretch.is_constant and stretch.number == 1.0):
             field = f"({body.text(stretch)} * {field})"
+        rank = ""
+        if self._looks_back:
+            before = body.point(own_point(part.inverse, self._before), f"q_{part.name}_before")
+            scaled = "" if stretch.is_constant and stretch.number == 1.0 else f"{body.text(stretch)} * "
+            rank = f"{sign}{scaled}{body.call(call, [before])}.w{'' if sunk == _NOWHERE else f' + {sunk}'}"
         if len(part.looks) > 1:
             self._painted = True
             look = body.call(self._functions.of_part(part, Role.LOOK), [q])
-            return f"painted({'' if inside else '-'}{field}, {look}, {sunk})"
-        return f"{self._names[id(part.material)]}({'' if inside else '-'}{field}, {sunk})"
+            return self._made("painted", sign + field, rank, look)
+        return self._made(self._names[id(part.material)], sign + field, rank)
 
     def _turned(self, part: Part, name: str, stretch: Expr) -> Expr:
         """The gradient in the scene's space: A^T g for the map p -> A p + b to the part's own space."""
@@ -253,7 +268,8 @@ class SurfaceWriter:
         body.add(f"Surface {first} = {self._blend(tree.first, body, sunk)};")
         body.add(f"Surface {second} = {self._blend(tree.second, body, sunk)};")
         weights = body.call(self._functions.weights(tree.shape), [f"{first}.field.w", f"{second}.field.w"])
-        body.add(f"Surface {name} = blended({first}, {second}, {weights}, {sunk});", tree.shape.span)
+        back = f", back, {sunk}" * self._looks_back
+        body.add(f"Surface {name} = blended({first}, {second}, {weights}{back});", tree.shape.span)
         return name
 
     def _name(self) -> str:

@@ -12,7 +12,6 @@ from sdfc.field.graph import FieldGraph
 from sdfc.shape.graph import Affine, Apply, Shape, ShapeGraph, children_of
 from sdfc.shape.matrix import Matrix, identity, scaling, translation
 
-
 SMALLEST_RADIUS = 1e-100  # float64 still has the squares of what is scaled from it, and their inverses
 
 

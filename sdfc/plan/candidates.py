@@ -154,7 +154,7 @@ def _passes(leaf: Leaf) -> float:
         case Blend():
             return _PASSES["blend"]
         case Ball():
-            return _classic()
+            return _classic() if leaf.bend is None else _PASSES["slope"]
         case _:
             assert_never(leaf)
 
@@ -190,7 +190,7 @@ class _Work:
             case Chord():
                 return 2.0 * self.slope(leaf.part)
             case Ball():
-                return self.value(leaf.part)
+                return self.value(leaf.part) if leaf.bend is None else self.slope(leaf.part)
             case _:
                 assert_never(leaf)
 

@@ -182,6 +182,31 @@ def may_flatten(step: Within) -> bool:
             return False
 
 
+def may_have_seams(step: Step) -> bool:
+    """Whether a face may be buried in a seam: one that cuts a part of a union, or a part that is marched."""
+    match step:
+        case All():
+            return not is_closed(step) or any(may_have_seams(s) for s in step.steps)
+        case Any():
+            return any(_is_cut(s) or may_have_seams(s) for s in step.steps)
+        case Within():
+            return may_have_seams(step.step)
+        case Closed() | Many() | Tangent() | Chord() | Ball() | Blend():
+            return False
+        case _:
+            assert_never(step)
+
+
+def _is_cut(step: Step) -> bool:
+    match step:
+        case All():
+            return True
+        case Within():
+            return _is_cut(step.step)
+        case _:
+            return False
+
+
 def is_closed(step: Step) -> bool:
     """Whether the whole tree is events: solved without marching."""
     match step:

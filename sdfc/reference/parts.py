@@ -19,7 +19,7 @@ from sdfc.reference.search import Advance, Array, Index, Level, Mask, Rays, adva
 
 NOBODY = -1
 MOST_TURNS = 8  # of all parts, to prove together what none proves alone
-WORTHWHILE = 256  # rays: for fewer it is not worth while to find regions
+WORTHWHILE = 300_000  # nodes of a part times rays: for less it takes longer to find its region than to do without
 
 Progress = Callable[[float], None]
 
@@ -64,8 +64,8 @@ class Parts:
         everyone, nobody = np.arange(start.size), np.full(start.size, NOBODY)
         clearance = np.inf
         self._clear[:] = start
-        for i, part in enumerate(self._each if start.size >= WORTHWHILE else ()):
-            region = region_of(part, level, self._rays, end)
+        for i, part in enumerate(self._each):
+            region = region_of(part, level, self._rays, end) if part.size * start.size >= WORTHWHILE else None
             if region is not None:
                 enter, self._leave[i] = region.interval(self._rays)
                 np.maximum(self._clear[i], enter, out=self._clear[i])

@@ -1,6 +1,7 @@
 """What is at points near the surface: gradient, value and material of the part whose surface it is; and distances.
 
-The tree is asked a little way back along the ray: the twin of sdfc/glsl/surface, which says why.
+Parts are ranked a little way back along the ray where there may be seams: the twin of sdfc/glsl/surface, which
+says why.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from sdfc.plan.steps import (
     Tangent,
     Within,
     is_closed,
+    may_have_seams,
 )
 from sdfc.reference.formulas import Formulas
 from sdfc.reference.rays import box_gap
@@ -47,7 +49,7 @@ _NEAR = 1e-2  # a point on a union's surface is no further than this from the bo
 class Surface:
     """`field` (4, n): gradient and value. `material` (n,): its index in the plan. `look` (13, n): see PROPERTIES.
 
-    `rank` (n,) is the value of what is traced.
+    `rank` (n,) is the value of what is traced, a little way back.
     """
 
     field: Array
@@ -67,6 +69,18 @@ class Surface:
         return Surface(self.field[:, chosen], self.rank[chosen], self.material[chosen], self.look[:, chosen])
 
 
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """Hits p (3, n), the way back (3, n) to where parts are ranked, and what hits are right to (n,)."""
+
+    p: Array
+    back: Array
+    fine: Array
+
+    def take(self, index: NDArray[np.int64]) -> _Place:
+        return _Place(self.p[:, index], self.back[:, index], self.fine[index])
+
+
 class SurfaceFold:
     """Folds a step tree at points, in the scene's own coordinates."""
 
@@ -76,13 +90,12 @@ class SurfaceFold:
         self._index = {id(m): i for i, m in enumerate(plan.materials)}
         self._looks = np.stack([formulas.material(m) for m in plan.materials], axis=1)
         self._boxes: dict[int, Box] = {}
+        self._looks_back = may_have_seams(plan.root)
 
     def at(self, p: Array, d: Array, fine: Array) -> Surface:
         """The surface at hits p (3, n) of rays along unit vectors d (3, n), right to `fine` (n,)."""
-        back = -_BACK * d
-        found = self._fold(self._plan.root, p + back, fine, np.zeros_like(fine))
-        found.field[3] -= np.sum(found.field[:3] * back, axis=0)
-        return found
+        back = -_BACK * d if self._looks_back else np.zeros_like(d)
+        return self._fold(self._plan.root, _Place(p, back, fine), np.zeros_like(fine))
 
     def distance(self, p: Array, reach: float) -> Array:
         """What tells how open the sky is: at most the distance (n,) to what is within `reach`; the right sign."""
@@ -90,25 +103,25 @@ class SurfaceFold:
 
     # surfaces
 
-    def _fold(self, step: Step, p: Array, fine: Array, sunk: Array) -> Surface:
+    def _fold(self, step: Step, place: _Place, sunk: Array) -> Surface:
         match step:
             case Closed():
-                return self._leaf(step.part, p, step.inside, np.zeros_like(fine))
+                return self._leaf(step.part, place, step.inside, np.zeros_like(sunk))
             case Ball():
                 # over its constant: then the gradient says how much of a distance the value is
-                return self._leaf(step.part, p, step.inside, sunk, scale=1.0 / max(step.lipschitz, 1e-9))
+                return self._leaf(step.part, place, step.inside, sunk, scale=1.0 / max(step.lipschitz, 1e-9))
             case Tangent():
-                return self._leaf(step.part, p, True, sunk)
+                return self._leaf(step.part, place, True, sunk)
             case Chord():
-                return self._leaf(step.part, p, False, sunk)
+                return self._leaf(step.part, place, False, sunk)
             case Blend():
-                return self._blend(step.tree, p, sunk)
+                return self._blend(step.tree, place, sunk)
             case Within():
-                return self._fold(step.step, p, fine, sunk)
+                return self._fold(step.step, place, sunk)
             case Any() | Many():
-                return self._nearest(members_of(step), p, fine, sunk)
+                return self._nearest(members_of(step), place, sunk)
             case All():
-                first, *rest = (self._fold(s, p, fine, _SUNK * fine) for s in step.steps)
+                first, *rest = (self._fold(s, place, _SUNK * place.fine) for s in step.steps)
                 for other in rest:
                     farther = np.flatnonzero(other.rank > first.rank)
                     first.put(farther, other.take(farther))
@@ -116,51 +129,57 @@ class SurfaceFold:
             case _:
                 assert_never(step)
 
-    def _nearest(self, members: tuple[Step, ...], p: Array, fine: Array, sunk: Array) -> Surface:
+    def _nearest(self, members: tuple[Step, ...], place: _Place, sunk: Array) -> Surface:
         """Only the members whose boxes are near are asked: a scene may have thousands."""
-        result = self._empty(p.shape[1])
+        result = self._empty(place.p.shape[1])
         for member in members:
-            near = np.flatnonzero(box_gap(p, self._box(member)) < _NEAR)
+            near = np.flatnonzero(box_gap(place.p, self._box(member)) < _NEAR)
             if near.size:
-                found = self._fold(member, p[:, near], fine[near], sunk[near])
+                found = self._fold(member, place.take(near), sunk[near])
                 nearer = np.flatnonzero(found.rank < result.rank[near])
                 result.put(near[nearer], found.take(nearer))
         return result
 
     def _leaf(
-        self, part: Part, p: Array, inside: bool, sunk: Array, formula: bool = False, scale: float = 1.0
+        self, part: Part, place: _Place, inside: bool, sunk: Array, formula: bool = False, scale: float = 1.0
     ) -> Surface:
-        field = self._formulas.surface(part, p, formula) * (scale if inside else -scale)
+        signed = scale if inside else -scale
+        field = self._formulas.surface(part, place.p, formula) * signed
+        before = field
+        if self._looks_back:
+            before = self._formulas.surface(part, place.p + place.back, formula) * signed
         if len(part.looks) > 1:
-            index = self._formulas.look(part, p)
+            index = self._formulas.look(part, place.p)
         else:
-            index = np.full(p.shape[1], self._index[id(part.material)])
-        return Surface(field, field[3] + sunk, index, self._looks[:, index])
+            index = np.full(place.p.shape[1], self._index[id(part.material)])
+        return Surface(field, before[3] + sunk, index, self._looks[:, index])
 
-    def _blend(self, tree: BlendTree, p: Array, sunk: Array) -> Surface:
+    def _blend(self, tree: BlendTree, place: _Place, sunk: Array) -> Surface:
         match tree:
             case Tangent():
-                return self._leaf(tree.part, p, True, sunk, formula=True)
+                return self._leaf(tree.part, place, True, sunk, formula=True)
             case Falling():
-                return self._leaf(tree.part, p, tree.inside, sunk, formula=True)
+                return self._leaf(tree.part, place, tree.inside, sunk, formula=True)
             case BlendUnion():
-                first, *rest = (self._blend(t, p, sunk) for t in tree.operands)
+                first, *rest = (self._blend(t, place, sunk) for t in tree.operands)
                 for other in rest:
                     nearer = np.flatnonzero(other.rank < first.rank)
                     first.put(nearer, other.take(nearer))
                 return first
             case BlendNode():
-                return self._blended(tree, self._blend(tree.first, p, sunk), self._blend(tree.second, p, sunk), sunk)
+                first, second = (self._blend(t, place, sunk) for t in (tree.first, tree.second))
+                return self._blended(tree, first, second, place, sunk)
             case _:
                 assert_never(tree)
 
-    def _blended(self, tree: BlendNode, a: Surface, b: Surface, sunk: Array) -> Surface:
+    def _blended(self, tree: BlendNode, a: Surface, b: Surface, place: _Place, sunk: Array) -> Surface:
         """Both gradients by the blend's own derivatives; the look is mixed in their proportion."""
         by_a, by_b, value = self._formulas.weights(tree.shape, a.field[3], b.field[3])
         share = by_b / np.maximum(by_a + by_b, 1e-6)
         field = np.concatenate([by_a * a.field[:3] + by_b * b.field[:3], value[None]])
         material = np.where(by_b > by_a, b.material, a.material)
-        return Surface(field, value + sunk, material, a.look + (b.look - a.look) * share)
+        rank = value + np.sum(field[:3] * place.back, axis=0) + sunk
+        return Surface(field, rank, material, a.look + (b.look - a.look) * share)
 
     def _empty(self, count: int) -> Surface:
         field = np.zeros((4, count))

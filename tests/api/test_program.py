@@ -159,3 +159,11 @@ def test_a_pixel_that_float32_cannot_resolve_is_noted(gl: None) -> None:
         program.render((4, 3), note=notes.append, camera=View(eye=(100.0, 9000.0, 0.0)))
         program.render((4, 3), note=notes.append, backend="cpu")
     assert len(notes) == 1 and "--backend cpu" in notes[0]
+
+
+def test_the_cpu_has_one_tracer_and_says_so() -> None:
+    notes: list[str] = []
+    with sdfc.compile("scene { sphere(radius: 1) }") as program:
+        for tracer in ("auto", "proven", "relaxed:omega=1.4", "segment"):
+            program.render((4, 3), note=notes.append, backend="cpu", tracer=tracer)
+    assert len(notes) == 2 and "'relaxed'" in notes[0] and "'segment'" in notes[1]

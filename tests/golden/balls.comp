@@ -219,28 +219,25 @@ float trace(vec3 o, vec3 d, float start, float limit) {
 
 struct Surface {
     vec4 field;  // gradient and value
-    float rank;  // the value of what is traced
+    float rank;  // the value of what is traced, a little way back
     float material;
 };
 
 Surface nearer(Surface a, Surface b) { if (b.rank < a.rank) return b; return a; }
 Surface farther(Surface a, Surface b) { if (b.rank > a.rank) return b; return a; }
 
-Surface unpainted_material(vec4 field, float sunk) {
-    return Surface(field, field.w + sunk, 0.0);
+Surface unpainted_material(vec4 field, float rank) {
+    return Surface(field, rank, 0.0);
 }
 
 Surface surface(vec3 p, vec3 d, float fine) {
-    vec3 back = -8.0 * fine * d;
-    p += back;
+    vec3 back = -8.0 * fine * d, before = p + back;
     float sunk = 3.0 * fine;  // what is marched, in an intersection
-    Surface s1 = unpainted_material(torus_surface(p, 0.52223295, 0.17407766), sunk);
+    Surface s1 = unpainted_material(torus_surface(p, 0.52223295, 0.17407766), torus_surface(before, 0.52223295, 0.17407766).w + sunk);
     vec4 g_twist_1 = twist_1_surface(p * 1.1489125);  // test.sdf:1:41
     vec3 q_2 = g_twist_1.xyz * 1.1489125;
-    s1 = farther(s1, unpainted_material(-vec4(q_2.xyz, g_twist_1.w) * 0.87038827, sunk));
-    Surface s = s1;
-    s.field.w -= dot(s.field.xyz, back);
-    return s;
+    s1 = farther(s1, unpainted_material(-vec4(q_2.xyz, g_twist_1.w) * 0.87038827, -0.87038827 * twist_1_surface(before * 1.1489125).w + sunk));
+    return s1;
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

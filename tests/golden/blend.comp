@@ -260,39 +260,34 @@ float trace(vec3 o, vec3 d, float start, float limit) {
 
 struct Surface {
     vec4 field;  // gradient and value
-    float rank;  // the value of what is traced
     float material;
     vec3 color;
     float roughness;
 };
 
-Surface nearer(Surface a, Surface b) { if (b.rank < a.rank) return b; return a; }
-Surface farther(Surface a, Surface b) { if (b.rank > a.rank) return b; return a; }
+Surface nearer(Surface a, Surface b) { if (b.field.w < a.field.w) return b; return a; }
+Surface farther(Surface a, Surface b) { if (b.field.w > a.field.w) return b; return a; }
 
-Surface red_material(vec4 field, float sunk) {
-    return Surface(field, field.w + sunk, 0.0, vec3(1.0, 0.029556835, 0.014443844), 0.5);
+Surface red_material(vec4 field) {
+    return Surface(field, 0.0, vec3(1.0, 0.029556835, 0.014443844), 0.5);
 }
 
-Surface blue_material(vec4 field, float sunk) {
-    return Surface(field, field.w + sunk, 1.0, vec3(0.014443844, 0.029556835, 1.0), 0.2);
+Surface blue_material(vec4 field) {
+    return Surface(field, 1.0, vec3(0.014443844, 0.029556835, 1.0), 0.2);
 }
 
 // a blend: w holds the derivatives by a and b, and the value
-Surface blended(Surface a, Surface b, vec3 w, float sunk) {
+Surface blended(Surface a, Surface b, vec3 w) {
     float share = w.y / max(w.x + w.y, 1e-6);
     vec4 field = vec4(w.x * a.field.xyz + w.y * b.field.xyz, w.z);
-    return Surface(field, field.w + sunk, w.y > w.x ? b.material : a.material, mix(a.color, b.color, share), mix(a.roughness, b.roughness, share));
+    return Surface(field, w.y > w.x ? b.material : a.material, mix(a.color, b.color, share), mix(a.roughness, b.roughness, share));
 }
 
 Surface surface(vec3 p, vec3 d, float fine) {
-    vec3 back = -8.0 * fine * d;
-    p += back;
-    Surface s1 = red_material(sphere_distance_surface(p, 0.47555065), 0.0);
-    Surface s2 = blue_material(box_distance_surface(p, vec3(1.1888766, 0.356663, 0.356663)), 0.0);
-    Surface s3 = blended(s1, s2, smooth_union_weights(s1.field.w, s2.field.w, 0.23777533), 0.0);  // test.sdf:3:9
-    Surface s = s3;
-    s.field.w -= dot(s.field.xyz, back);
-    return s;
+    Surface s1 = red_material(sphere_distance_surface(p, 0.47555065));
+    Surface s2 = blue_material(box_distance_surface(p, vec3(1.1888766, 0.356663, 0.356663)));
+    Surface s3 = blended(s1, s2, smooth_union_weights(s1.field.w, s2.field.w, 0.23777533));  // test.sdf:3:9
+    return s3;
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

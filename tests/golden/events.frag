@@ -199,26 +199,21 @@ float trace(vec3 o, vec3 d, float start, float limit) {
 
 struct Surface {
     vec4 field;  // gradient and value
-    float rank;  // the value of what is traced
     float material;
 };
 
-Surface nearer(Surface a, Surface b) { if (b.rank < a.rank) return b; return a; }
-Surface farther(Surface a, Surface b) { if (b.rank > a.rank) return b; return a; }
+Surface nearer(Surface a, Surface b) { if (b.field.w < a.field.w) return b; return a; }
+Surface farther(Surface a, Surface b) { if (b.field.w > a.field.w) return b; return a; }
 
-Surface unpainted_material(vec4 field, float sunk) {
-    return Surface(field, field.w + sunk, 0.0);
+Surface unpainted_material(vec4 field) {
+    return Surface(field, 0.0);
 }
 
 Surface surface(vec3 p, vec3 d, float fine) {
-    vec3 back = -8.0 * fine * d;
-    p += back;
-    Surface s1 = unpainted_material(box_surface(p, vec3(1.1547005)), 0.0);
-    s1 = farther(s1, unpainted_material(sphere_surface(p, 0.6928203), 0.0));
-    s1 = farther(s1, unpainted_material(-cylinder_surface(p, 0.34641016, 2.309401), 0.0));
-    Surface s = s1;
-    s.field.w -= dot(s.field.xyz, back);
-    return s;
+    Surface s1 = unpainted_material(box_surface(p, vec3(1.1547005)));
+    s1 = farther(s1, unpainted_material(sphere_surface(p, 0.6928203)));
+    s1 = farther(s1, unpainted_material(-cylinder_surface(p, 0.34641016, 2.309401)));
+    return s1;
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

@@ -143,32 +143,27 @@ float trace(vec3 o, vec3 d, float start, float limit) {
 
 struct Surface {
     vec4 field;  // gradient and value
-    float rank;  // the value of what is traced
     float material;
     vec3 color;
     float transmission;
     vec3 tint;
 };
 
-Surface nearer(Surface a, Surface b) { if (b.rank < a.rank) return b; return a; }
-Surface farther(Surface a, Surface b) { if (b.rank > a.rank) return b; return a; }
+Surface nearer(Surface a, Surface b) { if (b.field.w < a.field.w) return b; return a; }
+Surface farther(Surface a, Surface b) { if (b.field.w > a.field.w) return b; return a; }
 
-Surface unpainted_material(vec4 field, float sunk) {
-    return Surface(field, field.w + sunk, 0.0, vec3(0.48), 0.0, vec3(1.0));
+Surface unpainted_material(vec4 field) {
+    return Surface(field, 0.0, vec3(0.48), 0.0, vec3(1.0));
 }
 
-Surface glass_material(vec4 field, float sunk) {
-    return Surface(field, field.w + sunk, 1.0, vec3(0.47932017), 1.0, vec3(0.7454042, 1.0, 0.80695224));
+Surface glass_material(vec4 field) {
+    return Surface(field, 1.0, vec3(0.47932017), 1.0, vec3(0.7454042, 1.0, 0.80695224));
 }
 
 Surface surface(vec3 p, vec3 d, float fine) {
-    vec3 back = -8.0 * fine * d;
-    p += back;
-    Surface s1 = unpainted_material(plane_surface(p, vec3(0.0, 1.0, 0.0), -0.57735026), 0.0);
-    s1 = nearer(s1, glass_material(sphere_surface(p, 0.57735026), 0.0));
-    Surface s = s1;
-    s.field.w -= dot(s.field.xyz, back);
-    return s;
+    Surface s1 = unpainted_material(plane_surface(p, vec3(0.0, 1.0, 0.0), -0.57735026));
+    s1 = nearer(s1, glass_material(sphere_surface(p, 0.57735026)));
+    return s1;
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

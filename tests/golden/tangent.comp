@@ -193,27 +193,22 @@ float trace(vec3 o, vec3 d, float start, float limit) {
 
 struct Surface {
     vec4 field;  // gradient and value
-    float rank;  // the value of what is traced
     float material;
 };
 
-Surface nearer(Surface a, Surface b) { if (b.rank < a.rank) return b; return a; }
-Surface farther(Surface a, Surface b) { if (b.rank > a.rank) return b; return a; }
+Surface nearer(Surface a, Surface b) { if (b.field.w < a.field.w) return b; return a; }
+Surface farther(Surface a, Surface b) { if (b.field.w > a.field.w) return b; return a; }
 
-Surface unpainted_material(vec4 field, float sunk) {
-    return Surface(field, field.w + sunk, 0.0);
+Surface unpainted_material(vec4 field) {
+    return Surface(field, 0.0);
 }
 
 Surface surface(vec3 p, vec3 d, float fine) {
-    vec3 back = -8.0 * fine * d;
-    p += back;
     vec3 q_rounded_box_1 = vec3(0.8660254 * p.x + (-0.5 * p.z), p.y, 0.5 * p.x + 0.8660254 * p.z);
     vec4 g_rounded_box_1 = rounded_box_surface(q_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), param_edge * 0.9886885);  // test.sdf:2:9
     float sum = -0.5 * g_rounded_box_1.x + 0.8660254 * g_rounded_box_1.z;
     float sum_2 = 0.8660254 * g_rounded_box_1.x + 0.5 * g_rounded_box_1.z;
-    Surface s = unpainted_material(vec4(sum_2, g_rounded_box_1.y, sum, g_rounded_box_1.w), 0.0);
-    s.field.w -= dot(s.field.xyz, back);
-    return s;
+    return unpainted_material(vec4(sum_2, g_rounded_box_1.y, sum, g_rounded_box_1.w));
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

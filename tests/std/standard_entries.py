@@ -94,12 +94,7 @@ class Subject:
         return gauge(self.point, self.arguments) if gauge else self.formula
 
     def facts(self, level: float = 0.0) -> dict[str, ChildFacts]:
-        vector = self.graph.constant
-        boxes = {name: child.box(level) for name, child in self.children.items()}
-        return {
-            name: ChildFacts(vector(*boxes[name][0]), vector(*boxes[name][1]), vector(child.lipschitz))
-            for name, child in self.children.items()
-        }
+        return _facts(self.graph, self.children, level)
 
     @property
     def lipschitz(self) -> float:
@@ -169,6 +164,16 @@ class Subject:
         return (a + b) / 2
 
 
+def _facts(graph: FieldGraph, children: Mapping[str, Child], level: float = 0.0) -> dict[str, ChildFacts]:
+    boxes = {name: child.box(level) for name, child in children.items()}
+    return {
+        name: ChildFacts(
+            graph.constant(*boxes[name][0]), graph.constant(*boxes[name][1]), graph.constant(child.lipschitz)
+        )
+        for name, child in children.items()
+    }
+
+
 # --- arguments
 
 _LISTS = {Kind.NUMBERS: 1, Kind.POINTS2: 2, Kind.POINTS3: 3}
@@ -222,19 +227,27 @@ def _argument(draw: st.DrawFn, name: str, parameter: Parameter, graph: FieldGrap
 
 
 @st.composite
-def subjects(draw: st.DrawFn, name: str, kinds: str = "any") -> Subject:
-    """The standard entry with drawn arguments that meet its requirements, and drawn children."""
+def subjects(draw: st.DrawFn, name: str, kinds: str = "any", is_fenced: bool = False) -> Subject:
+    """The standard entry with drawn arguments that meet its requirements, and drawn children.
+
+    What it finds of them is told it, always where `is_fenced`; otherwise it may be as if they had no end.
+    """
     graph = FieldGraph()
     definition = Library(graph).definition(name)
     assert definition is not None
     for _ in range(60):
         elements = draw(st.sampled_from([3, 4, 5, 6])) if name != "heightfield" else draw(st.sampled_from([4, 6, 12]))
-        arguments = {p.name: draw(_argument(name, p, graph, elements)) for p in definition.values}
+        arguments = {p.name: draw(_argument(name, p, graph, elements)) for p in definition.values if not p.found}
         if all(holds(arguments).numbers[0] for holds, _ in definition.requirements):
             break
     else:
         reject()
     children = {p.name: draw(_children(p.kind, graph, kinds)) for p in definition.children}
+    facts = _facts(graph, children)
+    is_known = True if is_fenced else draw(st.booleans())
+    for p in definition.values:
+        if p.found is not None and p.default is not None:
+            arguments[p.name] = p.found(arguments, facts) if is_known else p.default(arguments)
     return Subject(definition, graph, arguments, children)
 
 
@@ -244,10 +257,12 @@ def default_subject(name: str) -> Subject:
     definition = Library(graph).definition(name)
     assert definition is not None
     arguments: dict[str, Argument] = {}
+    children = {p.name: _ball(graph, np.zeros(2 if p.kind is Kind.PROFILE else 3), 0.4) for p in definition.children}
+    facts = _facts(graph, children)
     for parameter in definition.values:
         assert parameter.default is not None, f"{name}: {parameter.name} has no default"
-        arguments[parameter.name] = parameter.default(arguments)
-    children = {p.name: _ball(graph, np.zeros(2 if p.kind is Kind.PROFILE else 3), 0.4) for p in definition.children}
+        found = parameter.found
+        arguments[parameter.name] = found(arguments, facts) if found else parameter.default(arguments)
     return Subject(definition, graph, arguments, children)
 
 

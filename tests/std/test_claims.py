@@ -145,6 +145,33 @@ def test_bounds_hold_every_inner_point(name: str, data: st.DataObject, seed: int
         assert len(wrong) == 0, (level, points[:, wrong[0]], value[wrong[0]])
 
 
+_ENDLESS = {
+    *("gyroid", "schwarz_p", "diamond", "waves", "heightfield", "plane", "half_plane", "slab"),  # whatever they are given
+    *("repeat", "repeat_profile", "mirror_repeat", "mirror_repeat_in_plane"),  # a count of 0 is without end
+    *("quadric", "convex_polyhedron"),  # the equation, or the planes, may be those of anything
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+@checked
+@given(data=st.data(), seed=_seeds)
+def test_a_solid_with_an_end_has_levels_with_an_end(name: str, data: st.DataObject, seed: int) -> None:
+    """What is rounded or blended must end too, and beyond its box the field is greater, however far away."""
+    subject = data.draw(subjects(name, "any", is_fenced=True))
+    if not np.isfinite(subject.bounds(0.0)).all():
+        assert name in _ENDLESS, "there is no end"
+        return
+    points = subject.scale * _directions(np.random.default_rng(seed), subject.definition.dimension, 3000)
+    points *= 10.0 ** np.random.default_rng(seed).uniform(0, 6, 3000)
+    value = subject.value(points)
+    uses_level = subject.definition.claims.bounds_use_level or subject.exactness in _OUTSIDE or subject.children
+    for level in [k * subject.scale for k in (0.0, 0.1, 1.0, 10.0) if k == 0.0 or uses_level]:
+        lo, hi = (corner[:, None] for corner in subject.bounds(level))
+        assert np.isfinite([lo, hi]).all(), level
+        outside = ((points < lo) | (points > hi)).any(axis=0)
+        assert (value[outside] > level).all()
+
+
 @pytest.mark.parametrize("name", _CONVEX)
 @checked
 @given(data=st.data(), seed=_seeds)

@@ -26,7 +26,7 @@ TEXTS = {
     "twisted": "scene { box(size: [0.6, 2, 0.6]).twist(100deg) }",
     "bent": "scene { box(size: [2, 0.25, 0.8]).bend(50deg) }",
     "rough": "scene { sphere(radius: 1).displace(amplitude: 0.08, wavelength: 0.4) }",
-    "rough and cut": "scene { sphere().displace(amplitude: 0.08, wavelength: 0.4) & box(size: [1.2, 1.2, 1.2]) }",
+    "rough and cut": "scene { sphere(radius: 1).displace(amplitude: 0.08, wavelength: 0.4) & box(size: 1.2) }",
     "lattice": "scene { gyroid(period: 0.55, thickness: 0.05) & sphere(radius: 1) }",
     "blobs": BLOBS + "scene { blobs() }",
     "waved and turned": "scene { box(size: [0.3, 2, 1.8]).shear_wave().twist(60deg).rotate(x: 30deg, z: 20deg) }",

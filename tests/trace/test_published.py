@@ -13,9 +13,9 @@ from truth import Picture, Tracing, certified, compiled_file, compiled_text, eve
 
 from sdfc.api.renderer import Shot
 from sdfc.api.request import View
+from sdfc.field.numeric import Evaluator
 from sdfc.pipeline import Compiled, Options, compile_scene
 from sdfc.plan.plan import FINE, LIFT
-from sdfc.field.numeric import Evaluator
 from sdfc.reference.certify import Certificate
 from sdfc.scene.model import Scene
 from sdfc.shape.lower import lower
@@ -103,7 +103,7 @@ CASES = [(n, s) for n in RAYS for s in TRACERS] + [(n, s) for n in ("csg5.sdf", 
 
 @pytest.mark.parametrize(("name", "spec"), CASES)
 def test_what_is_guaranteed(name: str, spec: str, tracing: Tracing) -> None:
-    """Nothing missed, nothing invented, nothing late, every hit within tolerance, but for contested and given-up rays."""
+    """Nothing missed, invented or late, and every hit within tolerance, but for contested rays and those given up."""
     proved = known(name, tracing, least_step(spec))
     compiled, picture = told(name, spec, tracing)
     np.testing.assert_array_equal(picture.d, proved.rays.d)
@@ -150,7 +150,7 @@ def test_segments_grow_where_the_ray_recedes(tracing: Tracing) -> None:
 
 @pytest.mark.parametrize("spec", ["relaxed", "enhanced", "auto_relaxed"])
 def test_reduced_discontinuities(spec: str, tracing: Tracing) -> None:
-    """Keinert 2014, section 3.4: how much f differs from the tolerance over the hits falls, by one Newton step the most."""
+    """Keinert 2014, section 3.4: over the hits, the spread of how far f is from the tolerance falls."""
     spread = {}
     for way in (0, 1, 2):
         compiled = compile_scene(compiled_file(SCENES / "csg5.sdf").scene, Options(f"{spec}:reduce={way}"))
@@ -218,7 +218,9 @@ def test_points_below_the_surface_are_no_shadow(tracing: Tracing) -> None:
     text = "scene { sphere(radius: 1) }\nlight sun { direction: [-0.2, -0.3, -1], intensity: 3 }\n"
     text += "camera { eye: [0, 0, 6], target: [0, 0, 0], fov: 30deg }"
     lit = compiled_text(text).scene
-    rough = compile_scene(lit, Options("liktor:min_step=8:refinements=0"))  # whose hits are as much as half a pixel deep
+    rough = compile_scene(
+        lit, Options("liktor:min_step=8:refinements=0")
+    )  # whose hits are as much as half a pixel deep
     constant, count = re.subn(
         r"lift = clearance\(.*\);", f"lift = max({LIFT}, 4.0 * tolerance(0.0));", rough.glsl("radiance")
     )

@@ -61,7 +61,7 @@ def check(text: str, view: View, tracing: Tracing, tracers: tuple[str, ...] = ("
 
 
 @pytest.mark.gpu
-@trees(20)
+@trees(12)
 @given(text=scenes(), view=st.sampled_from(VIEWS), other=st.sampled_from(OTHERS))
 def test_random_scenes(text: str, view: View, other: str, tracing: Tracing) -> None:
     note(text)
@@ -90,7 +90,7 @@ def test_many_and_cut(tracing: Tracing) -> None:
     check("scene { " + table(60, 2).replace("sphere(radius: ", "box(size: [1, 1.4, 0.6] * ") + " }", VIEWS[1], tracing)
 
 
-@trees(80)
+@trees(50)
 @given(text=scenes(), seed=st.integers(0, 2**31))
 def test_what_was_proved_holds_where_it_is_sampled(text: str, seed: int) -> None:
     """The normal form is the scene; a part is in its box, no steeper than it may be, convex where it is said to be."""

@@ -168,5 +168,5 @@ class Competition:
         if name not in self._courts:
             rays = RayDrawing(self.renderer.device, self.base.vertex())
             made = {"grid": (self.wanted.grid, None), "random": (self.size, self.wanted.random)}
-            self._courts[name] = court(self.base, rays, *made[name])
+            self._courts[name] = court(self.base, rays, *made[name], self.wanted.most)
         return self._courts[name]

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import inf
 
 import numpy as np
 
+from sdfc import pipeline
+from sdfc.field.order import evaluation_order
 from sdfc.measure import judge as judging
 from sdfc.measure.bench.answers import Answers, Array, Index, RayDrawing, Rays, Size, random_pixels
 from sdfc.measure.bench.record import Errors, Spread
@@ -13,6 +16,9 @@ from sdfc.measure.picture import Picture
 from sdfc.measure.truth import Truth, truth_of
 from sdfc.pipeline import Compiled
 from sdfc.reference import compare
+from sdfc.shape.lower import lower
+
+FEWEST = 500  # rays, however dear their truth is
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,7 +44,7 @@ class Court:
             depth=answers.depth,
             steps=answers.steps,
             unfinished=answers.given_up,
-            normal=self.unanswered.normal if normals is None else normals,
+            normal=self.unanswered.normal if normals is None else self._chosen(normals),
         )
         found = judging.judge(self.compiled, picture, self.truth, self.cone)
         sure, contested = found.sure, found.comparison.contested
@@ -77,6 +83,9 @@ class Court:
             ambiguous=int((~sure & ~contested).sum()),
         )
 
+    def _chosen(self, values: Array) -> Array:
+        return values if self.index is None else values[:, self.index]
+
     def _mean_pixels(self, answers: Answers) -> float:
         """Over the uncontested rays that hit in both."""
         both = answers.hit & self.truth.hit & self.truth.sure & np.isfinite(answers.depth)
@@ -89,13 +98,25 @@ def _spread(given: compare.Spread) -> Spread:
     return Spread(given.median, given.p99, given.maximum)
 
 
-def court(compiled: Compiled, drawing: RayDrawing, size: Size, count: int | None = None) -> Court:
-    """The truth about every ray of a picture, or about `count` random ones."""
+def court(compiled: Compiled, drawing: RayDrawing, size: Size, count: int | None = None, most: float = inf) -> Court:
+    """The truth about every ray of a picture, or about `count` random ones.
+
+    `most`: nodes of the field times rays; where it is less, about so many random ones (but FEWEST).
+    """
     rays = drawing.rays(compiled, size)
+    total = size[0] * size[1] if count is None else count
+    affordable = max(FEWEST, most / _nodes(compiled))
+    count = int(affordable) if affordable < total else count
     index = None if count is None else random_pixels(size, count)
     picture = _unanswered(rays if index is None else Rays(rays.o[:, index], rays.d[:, index]))
     cone = judging.footprint(compiled, size)
     return Court(compiled, size, index, cone, picture, truth_of(compiled, picture, cone))
+
+
+def _nodes(compiled: Compiled) -> int:
+    """Of the field as truth has it."""
+    with pipeline.deep_recursion():
+        return len(evaluation_order([lower(compiled.shape, compiled.scene.values.input("p"))]))
 
 
 def _unanswered(rays: Rays) -> Picture:

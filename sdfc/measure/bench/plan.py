@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 
 from sdfc.api.request import RequestError
@@ -24,6 +25,7 @@ OMEGAS = {"relaxed" if i == 2 else f"relaxed:omega={1.0 + 0.1 * i:g}": 1.0 + 0.1
 """The omega of each tracer that is compared with others of its kind; the default is 1.2, Keinert's choice."""
 FORCED = ("sphere", "relaxed:force=0", "relaxed", "relaxed:force=1e+09")
 KEINERT_STEPS = 80  # his limit
+AFFORDABLE = 6e6  # nodes of the field times rays: half a minute's truth, on a CPU of 2024
 QUICK = ("csg5.sdf", "jewel.sdf", "blobs.sdf", "lamp.sdf")
 QUICK_BUDGETS = (16, 64)
 
@@ -49,7 +51,8 @@ KEINERT = (
 class Wanted:
     """A run. `budgets` are measured on the scenes `budgeted` (by file name) at tolerance 1, `sweeps` on `swept`.
 
-    `grid`: the small picture whose every ray is judged; `random`: how many rays of the timed picture are.
+    `grid`: the small picture whose every ray is judged; `random`: how many rays of the timed picture are. `most`: so
+    many nodes of the field times rays are affordable for the truth of each; where there are more, of some of the rays.
     `foreign`: shaders of others, for a run of one scene.
     """
 
@@ -64,6 +67,7 @@ class Wanted:
     repeat: int = 7
     grid: Size = (160, 90)
     random: int = 2000
+    most: float = AFFORDABLE
     foreign: tuple[Path, ...] = ()
 
     def groups(self, scene: str, size: Size) -> list[Group]:
@@ -87,7 +91,8 @@ class Wanted:
     def settings(self) -> dict[str, str]:
         """For the file of results."""
         grid, random = f"{self.grid[0]}x{self.grid[1]}", f"{self.random} random pixels of the timed size"
-        return {"truth": f"every ray at {grid}, and {random}", "rounds": f"at most {self.repeat}"}
+        fewer = "" if self.most == inf else f"; fewer of them where rays times nodes of the field exceed {self.most:g}"
+        return {"truth": f"every ray at {grid}, and {random}{fewer}", "rounds": f"at most {self.repeat}"}
 
 
 @dataclass(frozen=True, slots=True)

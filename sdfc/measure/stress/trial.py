@@ -15,7 +15,7 @@ from sdfc.measure.picture import Picture, Tracing
 from sdfc.measure.stress.record import Case
 from sdfc.measure.truth import truth_of
 from sdfc.pipeline import Compiled
-from sdfc.plan.plan import FINE, SMALLEST_TOLERANCE
+from sdfc.plan.plan import FINE, HORIZON, SMALLEST_TOLERANCE
 from sdfc.plan.steps import is_closed
 from sdfc.reference.certify import Certificate, Status
 from sdfc.reference.compare import SLACK_ULPS
@@ -23,7 +23,7 @@ from sdfc.reference.compare import SLACK_ULPS
 Array: TypeAlias = NDArray[np.float64]
 Mask: TypeAlias = NDArray[np.bool_]
 
-ROWS = 720  # pictures are small, but judged as finely as one of so many rows
+ROWS = 100_000  # pictures are small, but judged as finely as one of so many rows
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,6 +76,7 @@ class _Drawn:
     picture: Picture
     near: Array  # what counts as touching, per ray: powers of two, so that few are different
     pixel: Array  # half of one
+    end: float  # how far rays are traced
 
 
 @pipeline.deep_recursion()
@@ -100,7 +101,8 @@ def _drawn(tracing: Tracing, compiled: Compiled, case: Case, size: tuple[int, in
     rounding = SMALLEST_TOLERANCE * np.maximum(1.0, np.where(t > 0.0, out, 0.0))
     exact = compiled.plan.tracer.needs_steps and is_closed(compiled.plan.root)
     near = rounding if exact else np.maximum(rounding, FINE * pixel)
-    return _Drawn(case, pixels, picture, 2.0 ** np.ceil(np.log2(near)), (at_eye + growth * t) / finer)
+    end = np.inf if exact or compiled.frame.is_finite else 0.5 * HORIZON
+    return _Drawn(case, pixels, picture, 2.0 ** np.ceil(np.log2(near)), (at_eye + growth * t) / finer, end)
 
 
 def _judged(compiled: Compiled, group: list[_Drawn]) -> list[Trial]:
@@ -108,6 +110,7 @@ def _judged(compiled: Compiled, group: list[_Drawn]) -> list[Trial]:
     trials, first = [], 0
     for drawn in group:
         part = _some(truth, slice(first, first + drawn.picture.hit.size))
+        part.contested[:] |= (part.status == Status.HIT) & (part.t_lo > drawn.end)
         first += drawn.picture.hit.size
         trials.append(Trial(drawn.case, drawn.size, drawn.picture, part, _kinds(drawn.picture, part), drawn.pixel))
     return trials
@@ -151,7 +154,9 @@ def _kinds(picture: Picture, truth: Certificate) -> dict[str, Mask]:
     solid = truth.status == Status.HIT
     both = _both(picture, truth)
     t = np.where(both, picture.depth, 0.0)
-    slack = SLACK_ULPS * np.spacing(np.maximum(np.abs(picture.o).max(axis=0), np.abs(t)).astype(np.float32))
+    far = np.spacing(np.maximum(np.abs(picture.o).max(axis=0), np.abs(t)).astype(np.float32))
+    near = np.spacing(np.maximum(1.0, np.abs(picture.o + t * picture.d).max(axis=0)).astype(np.float32))
+    slack = SLACK_ULPS * near + 2.0 * far  # of where the hit is; and a depth that is counted from the eye has its own ulp
     early = np.minimum(truth.t_early, truth.t_lo) - slack
     late = np.maximum(np.where(np.isfinite(truth.t_late), truth.t_late, truth.t_hi), truth.t_hi) + slack
     numbers = np.isfinite(picture.steps) & np.isfinite(picture.normal).all(axis=0)
