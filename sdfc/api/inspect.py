@@ -81,10 +81,20 @@ def _is_operation(field: FieldDeclaration) -> bool:
 
 
 def _usage(field: FieldDeclaration) -> str:
-    """`solid.round(radius: length >= 0)`: the children first, as in a chain, then the parameters as declared."""
+    """`solid.round(radius: length >= 0)`: the children first, as in a chain, then the parameters as declared.
+
+    What is found from a child is left out: it cannot be given.
+    """
+    from sdfc.syntax.walk import mentions
+
     text = field.span.source.text
     children = [p for p in field.parameters if p.kind.text in _CHILD_KINDS]
-    values = [text[p.span.start : p.span.end] for p in field.parameters if p.kind.text not in _CHILD_KINDS]
+    names = {child.name.text for child in children}
+    values = [
+        text[p.span.start : p.span.end]
+        for p in field.parameters
+        if p.kind.text not in _CHILD_KINDS and not mentions(p.default or ()).used & names
+    ]
     receiver = f"{children[0].kind.text}." if children else ""
     others = [f"{child.name.text}: {child.kind.text}" for child in children[1:]]
     return f"{receiver}{field.name.text}({', '.join(others + values)})"

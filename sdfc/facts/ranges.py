@@ -21,6 +21,11 @@ def _piece(whole: Range, index: int, count: int) -> Range:
     return ends[0], hi if index + 1 == count else ends[1]
 
 
+def _varying(whole: Range) -> int:
+    """How many components of a param vary."""
+    return sum(a != b for a, b in zip(*whole, strict=True))
+
+
 @dataclass(frozen=True, slots=True)
 class Ranges:
     """The range of each param, by component. For the expressions of one graph."""
@@ -29,8 +34,8 @@ class Ranges:
     _found: dict[int, tuple[list[float], list[float]]] = field(default_factory=dict, repr=False, compare=False)
 
     def pieces(self, names: Collection[str]) -> list[Mapping[str, Range]]:
-        """The ranges of the params named, cut into at most _PIECES boxes that cover them."""
-        live = sorted(name for name in names if self.of[name][0] != self.of[name][1])
+        """The ranges of the params named, cut into at most _PIECES boxes that cover them; no vector is cut."""
+        live = sorted(name for name in names if _varying(self.of[name]) == 1)
         if not live:
             return [self.of]
         cuts = max(1, int(_PIECES ** (1 / len(live)) + 1e-9))

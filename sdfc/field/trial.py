@@ -52,11 +52,11 @@ def steps_by_ball_and_parabola(
             there = {"p": o[:, on_way] + t[on_way] * d[:, on_way], "d": d[:, on_way]}
             f, g, slope = (np.broadcast_to(a, on_way.shape) for a in evaluate(there, params))
             taken += on_way.size
-            step = f / lipschitz
-            near = step <= NEAR * radius
-            if with_parabola:
-                step = np.maximum(step, _root(np.maximum(g, 0.0), slope, bend))
-            t[on_way] += step
+            ball = f / lipschitz
+            both = np.maximum(ball, _root(np.maximum(g, 0.0), slope, bend))
+            # as near for the one as for the other: where a field is far flatter than its constant, a small ball is not
+            near = both <= NEAR * radius
+            t[on_way] += np.maximum(both if with_parabola else ball, 0.0)
             on_way = on_way[~near & (t[on_way] < box[1][on_way])]
         return taken / RAYS
 

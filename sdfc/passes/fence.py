@@ -8,9 +8,10 @@ from sdfc.shape.graph import Apply, Shape, ShapeGraph, children_of
 
 
 def fence(root: Shape, graph: ShapeGraph, bounds: Bounds) -> Shape:
-    """Afterwards each parameter that is found, of an operation that stands in another, has a value from the boxes of its
-    children, where none of these is empty. The same solid: a warp that is rounded, hollowed out or blended has a field that
-    grows however far away. One that stands alone is looked at only where it is, and is left as it is."""
+    """Afterwards each parameter that is found, of an operation that stands in another, has a value from the boxes of
+    its children, where none of these is empty. Then the operation's field grows however far away, so that what is made
+    of it by rounding, hollowing or blending has an end where its child has one. The operation itself is the same solid;
+    one that stands alone is looked at only where it is, and is left as it is."""
 
     def below(shape: Shape, is_operand: bool) -> list[tuple[Shape, bool]]:
         return [(child, is_operand or isinstance(shape, Apply)) for child in children_of(shape)]

@@ -19,7 +19,7 @@ from sdfc.reference.search import Advance, Array, Index, Level, Mask, Rays, adva
 
 NOBODY = -1
 MOST_TURNS = 8  # of all parts, to prove together what none proves alone
-WORTHWHILE = 300_000  # nodes of a part times rays: for less it takes longer to find its region than to do without
+WORTHWHILE = 100_000  # nodes of a part times rays: for less it takes longer to find its region than to do without
 
 Progress = Callable[[float], None]
 

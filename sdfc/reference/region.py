@@ -39,7 +39,7 @@ class Region:
             within = (rays.o >= self.lo[:, None]) & (rays.o <= self.hi[:, None])
             enter = np.where(still, np.where(within, -np.inf, np.inf), ends.min(axis=0)).max(axis=0)
             leave = np.where(still, np.where(within, np.inf, -np.inf), ends.max(axis=0)).min(axis=0)
-        missed = ~(enter <= leave)
+        missed = ~(enter <= leave) | (self.lo > self.hi).any()
         return np.where(missed, np.inf, enter), np.where(missed, -np.inf, leave)
 
 

@@ -269,12 +269,13 @@ class StepTracer:
         bend = max(self._formulas.bend(step.part, known), 1e-6)
         value, core, slope = self._formulas.parabola(step.part, here.rays.at(here.t), here.rays.d)
         radius = value / max(step.lipschitz, 1e-9) + (3.0 * near if cut else 0.0)
-        above = np.maximum(core, 0.0) * (1.0 - 0.5 * near / np.maximum(radius, near))
+        above = np.maximum(core, 0.0)
         fall = 1e-12 - slope
         root = np.sqrt(fall * fall + 2.0 * bend * above)
         falling = fall > 0.0
         clear = np.where(falling, 2.0 * above / np.where(falling, fall + root, 1.0), (root - fall) / bend)
-        return np.where(radius <= near, here.t, here.t + np.maximum(radius, clear) * SHY)
+        ahead = np.maximum(radius, clear)
+        return np.where(ahead <= near, here.t, here.t + ahead * SHY)
 
     def _blend(self, step: Blend, here: _Place, cut: bool) -> Array:
         """A smooth union by empty balls: slower than by the lines below its operands, and as safe."""

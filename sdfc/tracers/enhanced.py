@@ -1,13 +1,13 @@
 """Steps for a field that is linear along the ray."""
 
-from sdfc.tracers.record import FORCE, REDUCE, Parameter, Tracer
+from sdfc.tracers.record import FORCE, REDUCE, STALLS, Parameter, Tracer
 
 ENTRY = Tracer(
     name="enhanced",
     doc="Looks to where the next ball would touch, were the field linear; one plain step where it does not.",
     source="Bálint & Valasek 2018",
     needs="a Lipschitz constant for every part",
-    guarantee="nothing missed; hits are early by up to the tolerance",
+    guarantee="nothing missed; hits are early by up to the tolerance; what is given up is said to be",
     needs_map=True,
     needs_steps=False,
     parameters=(
@@ -15,4 +15,7 @@ ENTRY = Tracer(
         FORCE,
         REDUCE,
     ),
+    pace=0.7,
+    weight=1.25,
+    weak=STALLS,
 )

@@ -1,6 +1,11 @@
 """Sphere tracing that walks on where its steps are short, for comparison."""
 
-from sdfc.tracers.record import Parameter, Tracer
+from sdfc.tracers.record import STALLS, Parameter, Tracer
+
+THIN = dict.fromkeys(
+    ("distance", "start", "nan", "ellipsoid", "repeat", "twist", "detail", "shell"),
+    "what is nowhere deeper than half the least step is lost",
+)
 
 ENTRY = Tracer(
     name="liktor",
@@ -15,4 +20,7 @@ ENTRY = Tracer(
         Parameter("refinements", 4.0, 0.0, 64.0, "of the bracket, after the first look at the inside", True),
         Parameter("plain", 0.0, 0.0, 1.0, "1: regula falsi, as published", True),
     ),
+    pace=0.9,
+    weight=1.4,
+    weak=STALLS | THIN,
 )

@@ -18,6 +18,12 @@ class Parameter:
     is_whole: bool = False  # whether it must be a whole number
 
 
+_ALONG = "a ray along a surface takes more passes than there are"
+STALLS = dict.fromkeys(("tangent", "edge", "axis", "far", "flush"), _ALONG) | {
+    "distance": "from a million radii a ray that passes close by may be taken for a hit"
+}
+"""Where all are weak that step by the distance alone."""
+
 FORCE = Parameter("force", 1.0, 0.0, 1e9, "given up, a ray hits where it came nearest, if so near: in half pixels")
 REDUCE = Parameter(
     "reduce", 0.0, 0.0, 2.0, "hits are moved to where the field is the tolerance: 1 a Newton step, 2 three passes", True

@@ -10,13 +10,14 @@ float tangent(float t, vec2 v, float eps) {
 // nothing is nearer than r
 float ball(float t, float r, float eps) { return r <= eps ? t : t + r * 0.9999996; }
 
-// nothing is nearer than r; v: what has the field's sign, and its slope along the ray, and bends down by no more than `bend`
+// Nothing is nearer than r; v: what has the field's sign, and its slope along the ray, and bends down by no more than
+// `bend`. It is there when both are as near as eps: a field may be far flatter than its Lipschitz constant says.
 float parabola(float t, float r, vec2 v, float bend, float eps) {
-    float above = max(v.x, 0.0) * (1.0 - 0.5 * eps / max(r, eps));
+    float above = max(v.x, 0.0);
     float fall = 2.4e-7 + 1e-6 * abs(v.y) - v.y;
     float root = sqrt(fall * fall + 2.0 * bend * above);
     float clear = fall > 0.0 ? 2.0 * above / (fall + root) : (root - fall) / bend;
-    return r <= eps ? t : t + max(r, clear) * 0.9999996;
+    return max(r, clear) <= eps ? t : t + max(r, clear) * 0.9999996;
 }
 
 // outside a convex function, from within: how far its tangent, or the end of its box, says to look ...

@@ -1,5 +1,5 @@
 // at a point without a gradient (a cone's tip, a medial axis) the surface faces the eye
-s.field.xyz = dot(s.field.xyz, s.field.xyz) > 1e-12 ? s.field.xyz : -d;
+s.field.xyz = dot(s.field.xyz, s.field.xyz) > 1e-28 ? s.field.xyz : -d;
 // one Newton step to the surface itself, off the skin that closes cracks and off the tolerance of marching
 float steepness = length(s.field.xyz), slope = dot(s.field.xyz, d);
 float most = 4.0 * tolerance(t) / clamp(steepness, 0.05, 1.0);

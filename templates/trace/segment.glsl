@@ -11,10 +11,10 @@ float trace(vec3 o, vec3 d, float start, float limit) {
         vec4 piece = map_span(p, d, reach);
 {% if parameter.symmetric == "1.0" %}
         float fall = max(-piece.z, piece.w);
-        bool is_clear = fall * reach < v;
+        bool is_clear = v > 0.0 && fall * reach < v;
 {% else %}
         float fall = -piece.z;
-        bool is_clear = piece.x > 0.0 || fall * reach < v;
+        bool is_clear = piece.x > 0.0 || v > 0.0 && fall * reach < v;
 {% endif %}
         bool found = v <= eps && !is_clear;
         float root = max(found ? v : v - 0.5 * eps, 0.0) / max(fall, 1e-6);

@@ -146,7 +146,16 @@ def test_bounds_hold_every_inner_point(name: str, data: st.DataObject, seed: int
 
 
 _ENDLESS = {
-    *("gyroid", "schwarz_p", "diamond", "waves", "heightfield", "plane", "half_plane", "slab"),  # whatever they are given
+    *(
+        "gyroid",
+        "schwarz_p",
+        "diamond",
+        "waves",
+        "heightfield",
+        "plane",
+        "half_plane",
+        "slab",
+    ),  # whatever they are given
     *("repeat", "repeat_profile", "mirror_repeat", "mirror_repeat_in_plane"),  # a count of 0 is without end
     *("quadric", "convex_polyhedron"),  # the equation, or the planes, may be those of anything
 }

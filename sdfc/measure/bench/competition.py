@@ -127,10 +127,10 @@ class Competition:
                 finished(record.cell, record)
 
     def _first(self, stack: ExitStack, legal: Entrant, group: Group) -> Drawing:
-        """A drawing whose program has been drawn once; what that took is noted the first time."""
+        """A drawing whose program is compiled; what its first frame took is noted, whoever shares the program."""
         drawing, front_end = timed(lambda: stack.enter_context(legal.drawing(self.size, group.tolerance)))
-        first = contest.FirstDraw(front_end, timed(drawing.draw)[1])
-        self._firsts.setdefault(legal.text, first)  # a program is built once, whoever else has it
+        if legal.text not in self._firsts:
+            self._firsts[legal.text] = contest.FirstDraw(front_end, timed(drawing.draw)[1])
         return drawing
 
     def _answers(self, legal: Entrant, drawing: Drawing) -> Answers | None:
