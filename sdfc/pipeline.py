@@ -44,6 +44,7 @@ class Options:
     rays: Rays = "cheap"  # "all": closed-form ray intervals even where marching is cheaper on a CPU
     prepass: bool = False  # tiles of pixels are told first how far they are empty, where that is legal
     without: tuple[str, ...] = ()  # passes not to run: to see what they are worth
+    field: bool = False  # every part must have a bound on its distance, whether the tracer needs it or not
     most_steps: int | None = None  # fewer passes of the loops than the compiler would allow: a measurer's budget
 
 
@@ -216,7 +217,7 @@ def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:
                 steps,
                 chosen,
                 tuple(dict.fromkeys(m for p in prover.parts for m in p.looks)) or (setting.unpainted,),
-                prover.slopes(needed=chosen.tracer.needs_map),
+                prover.slopes(needed=chosen.tracer.needs_map or options.field),
                 frame.radius,
                 frame.centre,
                 frame.is_finite,

@@ -45,7 +45,8 @@ VERSION = "450 core"
 
 
 @cache
-def _environment() -> Environment:
+def environment() -> Environment:
+    """The one Jinja environment."""
     return Environment(
         loader=PackageLoader("sdfc.templates", "."),
         undefined=StrictUndefined,
@@ -58,21 +59,23 @@ def _environment() -> Environment:
 
 def assemble(graph: FieldGraph, plan: Plan, setting: Setting, entry: str, stage: str) -> str:
     """One complete shader. `entry` is picture, radiance, probe or depth; `stage` fragment, or compute for a picture."""
-    return _Assembly(graph, plan, setting, entry).text(stage)
+    return Assembly(graph, plan, setting, entry).text(stage)
 
 
 def calibration_shaders() -> dict[str, str]:
     """The small fragment shaders that a device's speed is measured with, by name."""
     names = ("frame", "formula", "table")
-    return {name: _environment().get_template(f"calibrate/{name}.frag").render() for name in names}
+    return {name: environment().get_template(f"calibrate/{name}.frag").render() for name in names}
 
 
 def vertex_shader() -> str:
     """The vertex stage of the radiance and probe shaders."""
-    return _environment().get_template("entry/camera.vert").render(version=VERSION)
+    return environment().get_template("entry/camera.vert").render(version=VERSION)
 
 
-class _Assembly:
+class Assembly:
+    """One shader of a scene; sdfc/glsl/emission makes others than the renderer's from the same."""
+
     def __init__(self, graph: FieldGraph, plan: Plan, setting: Setting, entry: str) -> None:
         self._graph = graph
         self._plan = plan
@@ -84,13 +87,14 @@ class _Assembly:
         self._functions = Functions(graph, lowering, looks, (p.name for p in setting.params))
         self._lit = entry in ("picture", "radiance")
         self._is_cone = entry == "cone"
-        self._has_surface = entry not in ("depth", "cone")
+        self._has_surface = entry not in ("depth", "cone", "field")
+        self._has_field = entry in ("field", "tracer")  # parts of shaders: sdfc/glsl/emission
         # a shader that stands alone has nobody to sweep for it
         self._prepass = plan.prepass and entry not in ("cone", "picture")
 
     def text(self, stage: str) -> str:
         suffix = {"fragment": "frag", "compute": "comp"}[stage]
-        template = _environment().get_template(f"entry/{self._entry}.{suffix}")
+        template = environment().get_template(f"entry/{self._entry}.{suffix}")
         context = self._context() | self._camera(stage)
         text = template.render(context)
         params = _read(self._params(), text)
@@ -104,7 +108,7 @@ class _Assembly:
         many = ManyWriter(self._graph, self._functions, self._live, plan.materials, plan.rows_at_once)
         if tracer.needs_steps and not self._is_cone:
             trace = ProvenWriter(self._graph, self._functions, self._live, many).write(plan.root)
-        traced = tracer.needs_map or self._is_cone
+        traced = tracer.needs_map or self._is_cone or self._has_field
         has_map = traced or self._lit
         distance = DistanceWriter(self._graph, self._functions, self._live, plan.slopes, many, traced)
         map_text = distance.write(plan.swept if self._is_cone else plan.root) if has_map else ""

@@ -182,6 +182,8 @@ def _item(held: Sequence[str], note: str) -> Item:
     qualifiers = [w for w in code if w in _QUALIFIERS] if code[0] in _QUALIFIERS else []
     while code[0] in _QUALIFIERS:
         code = code[1:]
+    if code[0] == ";":  # a compute shader's size
+        return Item(Kind.PORT, (), "", text, note)
     if code[2] == "(":
         return Item(Kind.FUNCTION, (code[1],), code[0], text, note)
     return Item(_kind(qualifiers), _declared(code[1:]), code[0], text, note)

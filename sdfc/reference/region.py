@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sdfc.field.graph import Op, topological
 from sdfc.field.interval import IntervalEvaluator, Parameters
@@ -18,7 +19,10 @@ from sdfc.reference.search import Array, Mask, Rays
 ROUNDS = 60  # of cutting
 MOST_CELLS = 2048  # at once
 BUDGET = 2**14  # cells that are looked at in all
-FINE = 0.125  # of the box: cells smaller than that are not cut further
+FINE = 0.125  # of the box: what is narrower is cut only where that proves it,
+FINEST = FINE / 64.0  # and not below this
+WHOLE = -1
+LARGEST = float(np.finfo(np.float64).max)
 FARTHEST = 2.0**60  # no cells are made beyond
 MARGIN = 1e-9  # of the coordinates: more than the roundings of a ray's intervals with the box
 
@@ -51,15 +55,17 @@ def region_of(evaluator: IntervalEvaluator, level: float, rays: Rays, end: Array
         return None
     cutter = _Cutter(evaluator, level, rays.params)
     lo, hi = cutter.left_of(*_cells(inner, reach))
+    kept = [np.zeros((2, 3, 0))]
     for _ in range(ROUNDS):
-        if lo.shape[1] == 0:
-            return Region(np.full(3, np.inf), np.full(3, -np.inf), cutter.clearance)
-        size = hi.max(axis=1) - lo.min(axis=1)
-        coarse = ((hi - lo) > FINE * size[:, None]).any(axis=0)
-        if not coarse.any() or lo.shape[1] > MOST_CELLS or cutter.seen > BUDGET:
+        if lo.shape[1] == 0 or lo.shape[1] > MOST_CELLS or cutter.seen > BUDGET:
             break
-        cut = cutter.left_of(*cutter.halves(lo[:, coarse], hi[:, coarse]))
-        lo, hi = (np.concatenate([end[:, ~coarse], part], axis=1) for end, part in zip((lo, hi), cut, strict=True))
+        axis = cutter.axis(lo, hi, np.concatenate([*kept, np.stack([lo, hi])], axis=2))
+        cut = axis != WHOLE
+        kept.append(np.stack([lo[:, ~cut], hi[:, ~cut]]))
+        lo, hi = cutter.left_of(*_halves(lo[:, cut], hi[:, cut], axis[cut]))
+    lo, hi = np.concatenate([*kept, np.stack([lo, hi])], axis=2)
+    if lo.shape[1] == 0:
+        return Region(np.full(3, np.inf), np.full(3, -np.inf), cutter.clearance)
     if np.abs(lo).max() > inner or np.abs(hi).max() > inner:
         return None
     margin = MARGIN * inner
@@ -84,8 +90,11 @@ class _Cutter:
         self.clearance = min(self.clearance, float(np.min(bound[~left], initial=np.inf)) - self._level)
         return lo[:, left], hi[:, left]
 
-    def halves(self, lo: Array, hi: Array) -> tuple[Array, Array]:
-        """Both halves of each cell: cut across the axis without whose width the bound would be best."""
+    def axis(self, lo: Array, hi: Array, all_left: Array) -> NDArray[np.intp]:
+        """Where to cut each cell: across the axis without whose width its bound would be best; WHOLE: nowhere.
+
+        `all_left` (2, 3, m): the ends of all cells that are left, which say what is narrow.
+        """
         count = lo.shape[1]
         middle = lo + 0.5 * (hi - lo)
         flat_lo, flat_hi = (np.tile(end, 3) for end in (lo, hi))
@@ -94,13 +103,13 @@ class _Cutter:
             flat_lo[axis, part] = flat_hi[axis, part] = middle[axis]
         self.seen += count
         bound = self._bound(flat_lo, flat_hi).reshape(3, count)
+        proves = bound > self._level
+        size = (all_left[1].max(axis=1) - all_left[0].min(axis=1))[:, None]
+        may_cut = (hi - lo > FINE * size) | (proves & (hi - lo > FINEST * size))
         # of equals the widest
         bound += 1e-9 * np.abs(bound) * (hi - lo) / np.max(hi - lo)
-        axis = np.argmax(bound, axis=0)
-        column = np.arange(count)
-        first_hi, second_lo = hi.copy(), lo.copy()
-        first_hi[axis, column] = second_lo[axis, column] = middle[axis, column]
-        return np.concatenate([lo, second_lo], axis=1), np.concatenate([first_hi, hi], axis=1)
+        best = np.argmax(np.where(may_cut, np.maximum(bound, -LARGEST), -np.inf), axis=0)
+        return np.where(may_cut.any(axis=0), best, WHOLE)
 
     def _bound(self, lo: Array, hi: Array) -> Array:
         bound, _ = self._evaluator.value({"p": (lo, hi)}, self._params)
@@ -128,3 +137,11 @@ def _cells(inner: float, reach: float) -> tuple[Array, Array]:
 def _outside(grid: Array) -> Mask:
     """Unit cells of [-2, 2]^3 that are not in [-1, 1]^3."""
     return np.asarray(((grid < -1.0) | (grid >= 1.0)).any(axis=0))
+
+
+def _halves(lo: Array, hi: Array, axis: NDArray[np.intp]) -> tuple[Array, Array]:
+    """Both halves of each cell, cut across its axis."""
+    column = np.arange(lo.shape[1])
+    first_hi, second_lo = hi.copy(), lo.copy()
+    first_hi[axis, column] = second_lo[axis, column] = (lo + 0.5 * (hi - lo))[axis, column]
+    return np.concatenate([lo, second_lo], axis=1), np.concatenate([first_hi, hi], axis=1)

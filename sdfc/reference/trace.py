@@ -274,7 +274,7 @@ class StepTracer:
         root = np.sqrt(fall * fall + 2.0 * bend * above)
         falling = fall > 0.0
         clear = np.where(falling, 2.0 * above / np.where(falling, fall + root, 1.0), (root - fall) / bend)
-        ahead = np.maximum(radius, clear)
+        ahead = np.maximum(radius, np.where(core > 0.0, clear, 0.0))
         return np.where(ahead <= near, here.t, here.t + ahead * SHY)
 
     def _blend(self, step: Blend, here: _Place, cut: bool) -> Array:

@@ -17,6 +17,7 @@ float parabola(float t, float r, vec2 v, float bend, float eps) {
     float fall = 2.4e-7 + 1e-6 * abs(v.y) - v.y;
     float root = sqrt(fall * fall + 2.0 * bend * above);
     float clear = fall > 0.0 ? 2.0 * above / (fall + root) : (root - fall) / bend;
+    clear = v.x > 0.0 ? clear : 0.0;
     return max(r, clear) <= eps ? t : t + max(r, clear) * 0.9999996;
 }
 

@@ -46,7 +46,6 @@ class Brief:
     part: Part
     stage: str
     prefix: str
-    names: Mapping[str, str]  # what a global of the templates is called in the text
     controls: Sequence[Control]  # the params that the text reads
     materials: Sequence[str]
     guarantee: str  # of the tracer
@@ -63,14 +62,9 @@ class Brief:
     other: Callable[[str, str], str]  # the same order for another target and stage
 
 
-def as_is(items: list[Item], _: str) -> list[Item]:
+def as_is(items: list[Item], _: Brief) -> list[Item]:
     """No lowering."""
     return items
-
-
-def only_text(text: str, _: Brief) -> str:
-    """No wrapping."""
-    return text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,9 +86,8 @@ class Target:
     is_baked: bool = False  # whether it has no uniforms of one's own
     is_prefixed: bool = False  # whether the names of a complete shader need a prefix too
     is_pair: bool = False  # whether its stages belong together
-    lower: Callable[[list[Item], str], list[Item]] = as_is  # the items of a shader, and the prefix
-    wrap: Callable[[str, Brief], str] = only_text
-    comment: tuple[str, str] = ("// ", "")  # around a line of the header
+    lower: Callable[[list[Item], Brief], list[Item]] = as_is  # the items of a shader become the dialect's
+    page: Mapping[Part, str] = field(default_factory=dict)  # the template of the file around the text, where there is one
 
     @property
     def stages(self) -> tuple[str, ...]:

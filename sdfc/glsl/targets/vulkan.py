@@ -4,24 +4,24 @@ from __future__ import annotations
 
 from sdfc.glsl.source import Item, Kind
 from sdfc.glsl.targets.desktop import BOTH, SUFFIXES
-from sdfc.glsl.targets.record import Target
+from sdfc.glsl.targets.record import Brief, Target
 
 _OPAQUE = ("sampler", "image")
 
 
-def _in_a_block(items: list[Item], prefix: str) -> list[Item]:
+def _in_a_block(items: list[Item], brief: Brief) -> list[Item]:
     """Uniforms are members of one std140 block; where it is bound can be set by macros in front."""
     free = [item for item in items if item.kind is Kind.UNIFORM and not any(o in item.type for o in _OPAQUE)]
     if not free:
         return items
-    place, stem = next(i for i, item in enumerate(items) if item is free[0]), prefix.upper()
+    place, stem = next(i for i, item in enumerate(items) if item is free[0]), brief.prefix.upper()
     macros = [
         line
         for name, value in ((f"{stem}_SET", 0), (f"{stem}_BINDING", 1))
         for line in (f"#ifndef {name}", f"#define {name} {value}", "#endif")
     ]
     members = [f"    {i.type} {', '.join(i.names)};" + (f"  // {i.note}" if i.note else "") for i in free]
-    head = f"layout(std140, set = {stem}_SET, binding = {stem}_BINDING) uniform {prefix}_uniforms {{"
+    head = f"layout(std140, set = {stem}_SET, binding = {stem}_BINDING) uniform {brief.prefix}_uniforms {{"
     block = Item(Kind.UNIFORM, tuple(n for i in free for n in i.names), "", "\n".join([head, *members, "};"]))
     kept = [Item(Kind.DIRECTIVE, (), "", "\n".join(macros)), block]
     return [*items[:place], *kept, *(item for item in items[place:] if item not in free)]

@@ -87,7 +87,8 @@ def comparison(before: Store, after: Store) -> tuple[str, bool]:
     both = [cell for cell in before.records if cell in after.records]
     measured = [c for c in both if before.records[c].timing is not None and after.records[c].timing is not None]
     rows = [_compared(cell, before.records[cell], after.records[cell]) for cell in _sorted(measured)]
-    worse = [c for c in measured if after.records[c].wrong > before.records[c].wrong]
+    same = [c for c in measured if _judged(before.records[c]) == _judged(after.records[c])]
+    worse = [c for c in same if after.records[c].wrong > before.records[c].wrong]
     lost = [c for c in both if before.records[c].illegal is None and after.records[c].illegal is not None]
     head = ("cell", "ms before", "ms after", "ratio", "p99 before", "p99 after", "wrong before", "wrong after")
     ratios = [_ratio(before.records[c], after.records[c]) for c in measured]
@@ -96,9 +97,16 @@ def comparison(before: Store, after: Store) -> tuple[str, bool]:
         f"{len(measured)} cells in both; time after / before, geometric mean: {number(geometric_mean(ratios))}",
     ]
     parts += [f"{len(before.records) - len(both)} cells only before, {len(after.records) - len(both)} only after"]
+    if len(same) < len(measured):
+        parts.append(f"{len(measured) - len(same)} cells were judged by other rays: their errors are not held together")
     parts += [f"worse: {c}: {before.records[c].wrong} -> {after.records[c].wrong} wrong" for c in _sorted(worse)]
     parts += [f"no longer legal: {c}" for c in _sorted(lost)]
     return "\n\n".join(parts), bool(worse or lost)
+
+
+def _judged(record: Record) -> dict[str, int]:
+    """How many rays, by set."""
+    return {name: e.rays + e.contested + e.ambiguous for name, e in record.errors.items()}
 
 
 def _sorted(cells: Iterable[Cell]) -> list[Cell]:

@@ -28,7 +28,7 @@ vec2 cone = vec2(0.0);    // half a pixel: size at the eye, growth with the dist
 {{ surface.function }}
 
 // What a ray meets first. Without it, only `found` means anything.
-struct hit {
+struct Found {
     bool found;
     float t;        // how far from the ray's origin, in the scene's units
     vec3 position;
@@ -39,21 +39,21 @@ struct hit {
 
 // The first surface along a ray from `origin` along `direction` (of any length), at a distance of tmin to tmax.
 // `pixel`: half a pixel's size at the origin, and its growth with the distance; none asks for all that float32 has.
-hit trace_pixel(vec3 origin, vec3 direction, float tmin, float tmax, vec2 pixel) {
+Found trace_pixel(vec3 origin, vec3 direction, float tmin, float tmax, vec2 pixel) {
     vec3 o = (origin - CENTRE) / RADIUS, d = normalize(direction);
     cone = vec2(pixel.x / RADIUS, pixel.y);
     steps = 0.0;
     travelled = rebase(o, d);
     float t = trace(o, d, tmin / RADIUS - travelled, min(tmax / RADIUS - travelled, FAR));
-    bool hit_ = t < FAR && travelled + t <= tmax / RADIUS;
+    bool hit = t < FAR && travelled + t <= tmax / RADIUS;
     vec3 p = o + t * d;
-    Surface s = surface(hit_ ? p : vec3(0.0), d, rounding(hit_ ? t : 0.0));
+    Surface s = surface(hit ? p : vec3(0.0), d, rounding(hit ? t : 0.0));
 {% filter indent(4, true) %}
 {% include "shade/polish.glsl" %}
 {% endfilter %}
-    return hit(hit_, (travelled + t) * RADIUS, RADIUS * p + CENTRE, normalize(s.field.xyz), int(s.material + 0.5), Properties({{ surface_values }}));
+    return Found(hit, (travelled + t) * RADIUS, RADIUS * p + CENTRE, normalize(s.field.xyz), int(s.material + 0.5), Properties({{ surface_values }}));
 }
 
-hit trace_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
+Found trace_ray(vec3 origin, vec3 direction, float tmin, float tmax) {
     return trace_pixel(origin, direction, tmin, tmax, vec2(0.0));
 }
