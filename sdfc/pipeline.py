@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import Literal
 
 from sdfc.diagnostics import InternalError, SceneError, Source, scene_error
-from sdfc.facts.bend import Bends
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.ranges import Ranges
+from sdfc.facts.rule import Rules
 from sdfc.passes.fence import fence
 from sdfc.passes.flatten import flatten
 from sdfc.passes.negate import negate
-from sdfc.passes.own_origin import Frame, frame_of, own_origin
+from sdfc.passes.own_origin import Frame, frame_of, is_plain, own_origin
 from sdfc.passes.paint import paint
 from sdfc.passes.place import place
 from sdfc.passes.prune import prune
@@ -45,6 +45,7 @@ class Options:
     prepass: bool = False  # tiles of pixels are told first how far they are empty, where that is legal
     without: tuple[str, ...] = ()  # passes not to run: to see what they are worth
     field: bool = False  # every part must have a bound on its distance, whether the tracer needs it or not
+    own_unit: bool = True  # else a scene that is near its origin, and of middling size, keeps the coordinates it has
     most_steps: int | None = None  # fewer passes of the loops than the compiler would allow: a measurer's budget
 
 
@@ -97,10 +98,14 @@ class Workshop:
     bounds: Bounds
     ranges: Ranges
     library: Library
+    own_unit: bool = True
     frame: Frame | None = None
 
     def framed(self, root: Shape) -> Shape:
         self.frame = frame_of(root, self.bounds)
+        if not self.own_unit and is_plain(self.frame):
+            self.frame = replace(self.frame, centre=(0.0, 0.0, 0.0), radius=1.0)
+            return root
         return own_origin(root, self.scene.shapes, self.scene.values, self.frame)
 
 
@@ -125,10 +130,12 @@ PASSES = (
 )
 
 
-def normalise(scene: Scene, after: str | None = None, without: tuple[str, ...] = ()) -> tuple[Shape, Workshop]:
+def normalise(
+    scene: Scene, after: str | None = None, without: tuple[str, ...] = (), own_unit: bool = True
+) -> tuple[Shape, Workshop]:
     """The scene's shape after all passes, or after the one named; `without` some."""
     ranges = Ranges({p.name: _range_of(p.default, p.low, p.high) for p in scene.params})
-    workshop = Workshop(scene, Bounds(scene.values, ranges), ranges, Library(scene.values))
+    workshop = Workshop(scene, Bounds(scene.values, ranges), ranges, Library(scene.values), own_unit)
     root = scene.root
     with deep_recursion():
         for step in PASSES:
@@ -202,7 +209,7 @@ class Compiled:
 
 def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:
     """Prove what can be proved, choose, and be ready to print. Raises SceneError where nothing can be proved."""
-    root, workshop = normalise(scene, without=options.without)
+    root, workshop = normalise(scene, without=options.without, own_unit=options.own_unit)
     frame = workshop.frame
     assert frame is not None
     try:
@@ -210,8 +217,8 @@ def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:
             lipschitz = Lipschitz(workshop.ranges, workshop.bounds)
             setting = setting_of(scene, frame)
             chosen = choice(options.tracer)
-            bends = Bends(workshop.ranges, workshop.bounds, lipschitz) if chosen.tracer.needs_steps else None
-            prover = Prover(scene.values, workshop.bounds, lipschitz, setting.unpainted, options.rays, bends)
+            rules = Rules(workshop.ranges, workshop.bounds, lipschitz) if chosen.tracer.needs_steps else None
+            prover = Prover(scene.values, workshop.bounds, lipschitz, setting.unpainted, options.rays, rules)
             steps = prover.prove(root)
             plan = Plan(
                 steps,

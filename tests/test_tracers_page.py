@@ -1,11 +1,14 @@
-"""docs/tracers.md shows the table of tracers as it is."""
+"""docs/tracers.md and `sdfc list tracers` show the table of tracers as it is; what is asked of a tracer is checked."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
-from sdfc.tracers import TRACERS
+import pytest
+
+from sdfc.api.inspect import listing
+from sdfc.tracers import TRACERS, choice
 
 PAGE = (Path(__file__).parent.parent / "docs" / "tracers.md").read_text()
 
@@ -40,3 +43,32 @@ def test_where_they_are_weak() -> None:
     }
     rows = [(f"`{name}`", ", ".join(families), why) for (name, why), families in reasons.items()]
     assert shown("weak") == table(("tracer", "families of `sdfc stress`", "why"), *rows)
+
+
+def test_the_list_says_what_each_needs_and_gives() -> None:
+    words = {use.partition(":")[0]: doc for use, doc in listing("tracers")}
+    assert words.keys() == TRACERS.keys()
+    for name, tracer in TRACERS.items():
+        assert all(part in words[name] for part in (tracer.doc, tracer.source, tracer.needs, tracer.guarantee))
+
+
+@pytest.mark.parametrize(
+    ("spec", "complaint"),
+    [
+        ("relaxed:omega=2", "is from 1 to 1.99"),
+        ("relaxed:reduce=0.5", "is a whole number"),
+        ("liktor:refinements=nan", "is a whole number"),
+        ("segment:growth=nan", "is from 1 to 8"),
+        ("sphere:omega=1.2", "it has none"),
+        ("enhanced:beta=0.3", "there are: omega, force, reduce"),
+    ],
+)
+def test_a_parameter_out_of_range_is_refused(spec: str, complaint: str) -> None:
+    with pytest.raises(ValueError, match=complaint):
+        choice(spec)
+
+
+def test_a_choice_is_called_what_was_asked_for() -> None:
+    for spec in (*TRACERS, "relaxed:omega=1.4", "liktor:min_step=2:plain=1"):
+        assert choice(spec).spec == spec
+    assert choice("relaxed:omega=1.2").spec == "relaxed"

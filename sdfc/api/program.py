@@ -61,20 +61,35 @@ class Program:
         from sdfc.pipeline import Options
 
         checked = checked_tracer(tracer)
-        return self._compiled_as(Options(rays=rays) if checked == AUTO else Options(tracer=checked, rays=rays))
+        return self.compiled_as(Options(rays=rays) if checked == AUTO else Options(tracer=checked, rays=rays))
 
-    def _compiled_as(self, options: Options) -> Compiled:
+    def compiled_as(self, options: Options) -> Compiled:
+        """The compiler's result for exactly these options, made once."""
         if options not in self._compiled:
             from sdfc import pipeline
 
             self._compiled[options] = pipeline.compile_scene(self.scene, options)
         return self._compiled[options]
 
-    def glsl(self, target: str = "glsl450", stage: str = "fragment", tracer: str = DEFAULT_TRACER) -> str:
-        """The scene's picture as one complete shader."""
-        checked_names("target", (target,), ("glsl450",))
-        checked_names("stage", (stage,), ("fragment", "compute"))
-        return self.compiled(tracer).glsl("picture", stage)
+    def glsl(
+        self,
+        target: str = "glsl450",
+        stage: str | None = None,
+        tracer: str = DEFAULT_TRACER,
+        *,
+        part: str = "full",
+        prefix: str | None = None,
+        bake: bool = False,
+        params: Mapping[str, Setting] | None = None,
+    ) -> str:
+        """The scene's picture as one complete shader, or its `field` or `tracer` for a shader of your own.
+
+        `stage` is the target's first by default. `prefix` begins every global name (of a part: its file's name by
+        default). `bake` makes params constants: their defaults, or `params`. docs/emit-glsl.md has all targets.
+        """
+        from sdfc.api.emission import emitted
+
+        return emitted(self, target, stage, tracer, part, prefix, bake, params or {})
 
     def explanation(self, tracer: str = DEFAULT_TRACER) -> str:
         """What the compiler proved of the scene, how it will be traced, with reasons, and what it does not get.
@@ -90,7 +105,7 @@ class Program:
         else:
             decision = decide(self.scene, self._device_if_any(), pilot=True)
             options = options_of(decision.chosen)
-            compiled, reasons = self._compiled_as(options), account.chosen(decision)
+            compiled, reasons = self.compiled_as(options), account.chosen(decision)
         return "\n".join([compiled.explanation(), *reasons, *account.left_out(compiled, options)])
 
     def _device_if_any(self) -> GlRenderer | None:
@@ -139,7 +154,7 @@ class Program:
         from sdfc.api.choose import WORTH_A_PILOT, decide, options_of
 
         if tracer == AUTO and isinstance(renderer, GlRenderer) and rays >= WORTH_A_PILOT:
-            return self._compiled_as(options_of(decide(self.scene, renderer, pilot=True).chosen))
+            return self.compiled_as(options_of(decide(self.scene, renderer, pilot=True).chosen))
         return self.compiled(tracer, renderer.rays)
 
     def _renderer(self, backend: str, note: Callable[[str], None]) -> Renderer:

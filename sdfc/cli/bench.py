@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from sdfc.cli import options
+from sdfc.cli.failure import EXIT_BUG
 from sdfc.cli.values import parse_size
 
 if TYPE_CHECKING:
@@ -104,7 +105,8 @@ def command(ctx: click.Context, /, output: Path | None, backend: str, **asked: A
     if asked["report"]:
         _report(asked["report"], output)
         return
-    _bench(_wanted(asked), output)
+    if _bench(_wanted(asked), output).failures:
+        ctx.exit(EXIT_BUG)
 
 
 def _wanted(asked: dict[str, Any]) -> Wanted:
@@ -118,7 +120,7 @@ def _wanted(asked: dict[str, Any]) -> Wanted:
         raise click.UsageError("--foreign goes with one SCENE, which the shader shows")
     usual = plan.quick() if asked["quick"] else plan.full()
     if asked["scenes"]:
-        usual = replace(usual, scenes=asked["scenes"], budgeted=(), swept=())
+        usual = replace(usual, scenes=asked["scenes"], budgeted=(), swept=(), aside=1)
     else:
         usual = replace(usual, scenes=plan.usual_scenes(plan.QUICK if asked["quick"] else ()))
     if asked["tracers"] is not None:
@@ -131,7 +133,7 @@ def _wanted(asked: dict[str, Any]) -> Wanted:
     return replace(usual, **{name: asked[name] for name in same if asked[name]})
 
 
-def _bench(wanted: Wanted, folder: Path | None) -> None:
+def _bench(wanted: Wanted, folder: Path | None) -> Store:
     from sdfc.cli.progress import ProgressBar
     from sdfc.measure.bench import plots, tables
     from sdfc.measure.bench.run import bench
@@ -146,6 +148,7 @@ def _bench(wanted: Wanted, folder: Path | None) -> None:
         _finish(store, folder)
         if plots.are_there(note):
             plots.all_of(store, folder)
+    return store
 
 
 def _finish(store: Store, folder: Path) -> None:

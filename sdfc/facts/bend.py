@@ -16,7 +16,6 @@ from sdfc.shape.graph import Apply, Shape
 from sdfc.shape.lower import Lowering
 
 _ROUNDING = 1.0 + 1e-5
-PAYS = 1.4  # a step by a parabola costs 1.2 to 1.6 times one by a ball (measured on llvmpipe)
 
 
 class Bends:
@@ -27,25 +26,6 @@ class Bends:
         self._bounds = bounds
         self._lipschitz = lipschitz
         self._found: dict[tuple[int, Box], Expr | None] = {}
-
-    def worthwhile(self, shape: Apply, region: Box, lipschitz: float) -> Expr | None:
-        """The bound, if tried rays take so many fewer steps by it that it pays (at the params' middle values)."""
-        bend = self.bound(shape, region)
-        if bend is None:
-            return None
-        from sdfc.field.numeric import Evaluator
-        from sdfc.field.trial import steps_by_ball_and_parabola
-
-        value = Lowering().value(shape, self._bounds.values.input("p"))
-        usual = {
-            name: [0.5 * (a + b) for a, b in zip(lo, hi, strict=True)] for name, (lo, hi) in self._ranges.of.items()
-        }
-        known = max(float(Evaluator([bend])({}, usual)[0]), 1e-6)
-        slope = max(lipschitz, 1e-9)
-        balls, parabolas = steps_by_ball_and_parabola(
-            value, core_of(shape, value), slope, known, region.lo, region.hi, usual
-        )
-        return bend if balls >= PAYS * parabolas else None
 
     def bound(self, shape: Apply, region: Box) -> Expr | None:
         """K: along lines of unit speed the core falls no faster than f + f' x - K x x / 2, while it is positive.

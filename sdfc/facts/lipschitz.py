@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from types import MappingProxyType
 from typing import assert_never
 
-from sdfc.diagnostics import scene_error
+from sdfc.diagnostics import SceneError, scene_error
 from sdfc.facts.bounds import Bounds, child_facts
 from sdfc.facts.box import Box, everything
 from sdfc.facts.pointwise import is_pointwise
 from sdfc.facts.ranges import Ranges
-from sdfc.field.graph import Type, params_of
+from sdfc.field.graph import Expr, Op, Type, params_of
+from sdfc.field.graph import topological as topological_values
 from sdfc.shape.definition import Exactness
 from sdfc.shape.graph import (
     Affine,
@@ -25,6 +28,26 @@ from sdfc.shape.graph import (
     topological,
 )
 from sdfc.shape.lower import lower
+
+
+_MOST_SUSPECTS = 2000  # nodes of a formula that are looked at for what makes it steep
+_STEEP = MappingProxyType(
+    {
+        Op.FLOOR: "`floor` jumps",
+        Op.ROUND: "`round` jumps",
+        Op.SIGN: "`sign` jumps",
+        Op.MOD: "`mod` jumps",
+        Op.SELECT: "`if` may jump from one value to the other",
+        Op.SQRT: "`sqrt` is steep without limit at 0",
+        Op.POW: "`pow` may be steep without limit at 0",
+        Op.LOG: "`log` is steep without limit at 0",
+        Op.DIV: "a division by what may be 0",
+        Op.TAN: "`tan` has poles",
+        Op.ASIN: "`asin` is steep without limit at -1 and 1",
+        Op.ACOS: "`acos` is steep without limit at -1 and 1",
+        Op.ATAN2: "`atan` of two numbers jumps where the first changes its sign",
+    }
+)
 
 
 class Lipschitz:
@@ -132,10 +155,18 @@ class Lipschitz:
         pieces = self._ranges.pieces(params_of([value]))
         bound = max(gradient_bound(value, region.lo, region.hi, piece, 2048 // len(pieces)) for piece in pieces)
         if not math.isfinite(bound):
-            raise scene_error(
-                f"no bound of the slope of '{shape.definition.name}' could be found"
-                + (" over its box" if region.is_finite else ": it has no bounds"),
-                shape.span,
-                "claim one (`lipschitz 2`), or keep it in a box: `& box(size: [2, 2, 2])`",
-            )
+            raise self._unbounded(shape, region, value)
         return bound
+
+    def _unbounded(self, shape: Apply, region: Box, value: Expr) -> SceneError:
+        """Names what is to blame: the first function of the formula, from within, whose slope has no bound."""
+        from sdfc.field.interval import gradient_bound
+
+        what = f"no bound of the slope of '{shape.definition.name}' could be found"
+        if not region.is_finite:
+            hint = "claim one (`lipschitz 2`), or keep it in a box: `& box(size: [2, 2, 2])`"
+            return scene_error(f"{what}: it has no bounds", shape.span, hint)
+        for node in itertools.islice(topological_values([value]), _MOST_SUSPECTS):
+            if node.op in _STEEP and not math.isfinite(gradient_bound(node, region.lo, region.hi, self._ranges.of, 64)):
+                return scene_error(f"{what} over its box: {_STEEP[node.op]}", shape.span, "claim one: `lipschitz 2`")
+        return scene_error(f"{what} over its box", shape.span, "claim one: `lipschitz 2`")

@@ -1,38 +1,151 @@
-"""Rays tried in float64 before a rule is chosen: how many steps to the surface by empty balls, and by parabolas too."""
+"""Rays tried in float64 before a rule is chosen: how many steps each rule takes to the surface, and what is unbounded."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sdfc.field.derivative import directional
-from sdfc.field.graph import Expr
+from sdfc.field.derivative import directional, gradient
+from sdfc.field.graph import Expr, Type
 from sdfc.field.numeric import Evaluator
+from sdfc.field.piece import SHORT, look
+from sdfc.field.span import span
+from sdfc.field.span_ranges import HUGE
 
 Array = NDArray[np.float64]
+Params: TypeAlias = Mapping[str, ArrayLike]
+Rule: TypeAlias = Callable[["_Rays", Array, NDArray[np.int64]], Array]  # rays, t, which: how far is clear
 
 RAYS = 256
-MOST = 60  # steps: what takes longer is long either way
+MOST = 80  # steps: what takes longer is long either way
+_LATE = 4 * MOST  # what a ray still counts that is not there by then: its tracer would stop too early
 NEAR = 1e-5  # of the box: what counts as there
+_CUTS = 16  # of a piece that no bound is known for, before it counts as one
+_PIECES = 16  # of a ray, to begin with
+_JUMP = 0.1  # of all its change: what a field may change by in so short a piece
 
 
-def steps_by_ball_and_parabola(
-    value: Expr,
-    core: Expr,
-    lipschitz: float,
-    bend: float,
-    lo: Sequence[float],
-    hi: Sequence[float],
-    params: Mapping[str, ArrayLike],
-) -> tuple[float, float]:
-    """Mean steps of rays through a box, from all sides: the same rays every time.
+@dataclass(frozen=True, slots=True)
+class _Rays:
+    """Rays through a box, from all sides: origins, unit directions (3, n), the box's interval (n,), its radius."""
 
-    `value` (FLOAT in the VEC3 `p`) has the Lipschitz constant, `core` the bend (sdfc/field/bend).
+    o: Array
+    d: Array
+    first: Array
+    last: Array
+    radius: float
+
+    def at(self, t: Array, which: NDArray[np.int64]) -> dict[str, Array]:
+        return {"p": self.o[:, which] + t * self.d[:, which], "d": self.d[:, which]}
+
+
+class Trial:
+    """Tries rules on one field in one box (FLOAT in the VEC3 `p`), at given values of the params.
+
+    All are asked to come as near to the surface: by its distance, which is the value over the gradient's length.
     """
+
+    def __init__(self, value: Expr, lo: Sequence[float], hi: Sequence[float], params: Params) -> None:
+        self._value = value
+        self._p, self._d = value.graph.input("p"), value.graph.input("d")
+        self._rays = _through(np.array(lo)[:, None], np.array(hi)[:, None])
+        self._params = params
+        self._near = Evaluator([value, gradient(value, self._p)])
+
+    def balls(self, lipschitz: float) -> float:
+        """Mean steps of a ray by empty balls."""
+        evaluate = Evaluator([self._value])
+
+        def rule(rays: _Rays, t: Array, which: NDArray[np.int64]) -> Array:
+            (value,) = evaluate(rays.at(t, which), self._params)
+            return np.broadcast_to(value / lipschitz, t.shape)
+
+        return self._mean(rule)
+
+    def parabolas(self, core: Expr, lipschitz: float, bend: float) -> float:
+        """Mean steps by the roots of the parabolas below the field's core, or by balls where these are more."""
+        evaluate = Evaluator([self._value, core, directional(core, {self._p: self._d})])
+
+        def rule(rays: _Rays, t: Array, which: NDArray[np.int64]) -> Array:
+            found = evaluate(rays.at(t, which), self._params)
+            value, above, slope = (np.broadcast_to(a, t.shape) for a in found)
+            return np.maximum(value / lipschitz, _root(np.maximum(above, 0.0), slope, bend))
+
+        return self._mean(rule)
+
+    def pieces(self, lipschitz: float) -> float:
+        """Mean steps by what is known of the pieces of the ray ahead; the constant may be infinite."""
+        evaluate = self._spans()
+        ahead = self._rays.last - self._rays.first
+
+        def rule(rays: _Rays, t: Array, which: NDArray[np.int64]) -> Array:
+            eps = np.full(t.shape, NEAR * rays.radius)
+            length = np.maximum(np.minimum(ahead[which], rays.last[which] - t), SHORT * eps)
+            found = evaluate({**rays.at(t, which), "s": length}, self._params)
+            value, *bounds = (np.broadcast_to(a, t.shape) for a in found)
+            clear, there, ahead[which] = look(length, value, _four(bounds), lipschitz, np.zeros(1), eps)
+            return np.where(there, 0.0, np.maximum(clear, 1e-12))
+
+        return self._mean(rule)
+
+    def is_bounded(self) -> bool:
+        """Whether spans bound the field along rays, however short they must be: it has no jump, and no pole.
+
+        Pieces without a bound of the slope are cut until they are too short to matter: in what is left the value may
+        not change by much.
+        """
+        evaluate, rays = self._spans(), self._rays
+        which = np.repeat(np.arange(RAYS), _PIECES)
+        length = (rays.last - rays.first)[which] / _PIECES
+        start = rays.first[which] + np.tile(np.arange(_PIECES), RAYS) * length
+        whole = 0.0
+        for cut in range(_CUTS):
+            found = evaluate({**rays.at(start, which), "s": length}, self._params)
+            value, low, high, fall, rise = (np.broadcast_to(a, start.shape) for a in found)
+            if cut == 0:
+                whole = float(np.ptp(value[np.isfinite(value)])) if np.isfinite(value).any() else 0.0
+            open_ = ~((fall > -HUGE) & (rise < HUGE)) | ~(np.isfinite(low) & np.isfinite(high))
+            if not open_.any():
+                return True
+            if cut + 1 == _CUTS:
+                return bool(((high - low)[open_] < _JUMP * whole).all())
+            some = np.flatnonzero(open_)[: 8 * RAYS]
+            which, length = np.tile(which[some], 2), np.tile(0.5 * length[some], 2)
+            start = np.concatenate([start[some], start[some] + length[: some.size]])
+        raise AssertionError("the last cut decides")
+
+    def _spans(self) -> Evaluator:
+        ahead = span(self._value, self._p, self._d, self._value.graph.input("s", Type.FLOAT))
+        return Evaluator([self._value, *ahead.value, *ahead.slope])
+
+    def _mean(self, rule: Rule) -> float:
+        rays = self._rays
+        t, which, taken = rays.first.copy(), np.arange(RAYS), 0
+        for _ in range(MOST):
+            if not which.size:
+                break
+            taken += which.size
+            value, slope = self._near(rays.at(t[which], which), self._params)
+            steep = np.maximum(np.linalg.norm(np.broadcast_to(slope, (3, which.size)), axis=0), 1e-9)
+            there = np.broadcast_to(value, which.shape) <= NEAR * rays.radius * steep
+            clear = np.nan_to_num(rule(rays, t[which], which))
+            t[which] += np.maximum(clear, 0.0)
+            which = which[~there & (clear > 0.0) & (t[which] < rays.last[which])]
+        return (taken + _LATE * which.size) / RAYS
+
+
+def _four(bounds: Sequence[Array]) -> tuple[Array, Array, Array, Array]:
+    low, high, fall, rise = bounds
+    return low, high, fall, rise
+
+
+def _through(low: Array, high: Array) -> _Rays:
+    """The same rays every time."""
     random = np.random.default_rng(20)
-    low, high = np.array(lo)[:, None], np.array(hi)[:, None]
     middle, radius = 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low))
     away = random.normal(size=(3, RAYS))
     o = middle + 3.0 * radius * away / np.linalg.norm(away, axis=0)
@@ -40,27 +153,7 @@ def steps_by_ball_and_parabola(
     d /= np.linalg.norm(d, axis=0)
     with np.errstate(divide="ignore"):
         ends = (low - o) / d, (high - o) / d
-    box = np.minimum(*ends).max(axis=0), np.maximum(*ends).min(axis=0)
-    p, direction = value.graph.input("p"), value.graph.input("d")
-    evaluate = Evaluator([value, core, directional(core, {p: direction})])
-
-    def mean(with_parabola: bool) -> float:
-        t, on_way, taken = box[0].copy(), np.arange(RAYS), 0
-        for _ in range(MOST):
-            if not on_way.size:
-                break
-            there = {"p": o[:, on_way] + t[on_way] * d[:, on_way], "d": d[:, on_way]}
-            f, g, slope = (np.broadcast_to(a, on_way.shape) for a in evaluate(there, params))
-            taken += on_way.size
-            ball = f / lipschitz
-            both = np.maximum(ball, _root(np.maximum(g, 0.0), slope, bend))
-            # as near for the one as for the other: where a field is far flatter than its constant, a small ball is not
-            near = both <= NEAR * radius
-            t[on_way] += np.maximum(both if with_parabola else ball, 0.0)
-            on_way = on_way[~near & (t[on_way] < box[1][on_way])]
-        return taken / RAYS
-
-    return mean(False), mean(True)
+    return _Rays(o, d, np.minimum(*ends).max(axis=0), np.maximum(*ends).min(axis=0), radius)
 
 
 def _root(above: Array, slope: Array, bend: float) -> Array:

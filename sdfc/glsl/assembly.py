@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
@@ -19,6 +19,7 @@ from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
 from sdfc.glsl.names import identifier, param_name
 from sdfc.glsl.proven import ProvenWriter, TraceText
+from sdfc.glsl.source import Item, joined, parse, pruned
 from sdfc.glsl.span import SpanWriter
 from sdfc.glsl.surface import SurfaceWriter
 from sdfc.plan.plan import CUT, FINE, GROW, HORIZON, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, TILE, Plan
@@ -42,6 +43,9 @@ class Variable:
 
 
 VERSION = "450 core"
+_MARK = "\x1f"  # before and after the library in a text that is not finished
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_COMMENT = re.compile(r"//[^\n]*")
 
 
 @cache
@@ -96,11 +100,13 @@ class Assembly:
         suffix = {"fragment": "frag", "compute": "comp"}[stage]
         template = environment().get_template(f"entry/{self._entry}.{suffix}")
         context = self._context() | self._camera(stage)
+        context["mark"] = _MARK
         text = template.render(context)
         params = _read(self._params(), text)
         if len(params) < len(self._setting.params):
             text = template.render(context | {"params": params})
-        return "\n".join(line.rstrip() for line in text.split("\n")).replace("\n\n\n", "\n\n")
+        text = "\n".join(line.rstrip() for line in _with_needed_library(text).split("\n"))
+        return re.sub(r"\n{3,}", "\n\n", text)
 
     def _context(self) -> dict[str, object]:
         plan, tracer = self._plan, self._plan.tracer
@@ -120,6 +126,7 @@ class Assembly:
         context: dict[str, object] = {
             "version": VERSION,
             "header": self._header(),
+            "mark": "",
             "radius": literal(plan.radius),
             "centre": _vector(plan.centre),
             "params": self._params(),
@@ -212,6 +219,19 @@ class Assembly:
             lines += scoped if len(scoped) == 1 else ["{", *(f"    {line}" for line in scoped), "}"]
             done[expr.id] = name
         return lines
+
+
+def _with_needed_library(text: str) -> str:
+    """The text with only that of the library, between the marks, which the rest asks for."""
+    before, library, after = text.split(_MARK)
+    asked_for = set(_WORD.findall(_COMMENT.sub("", before + after)))
+    return f"{before}{joined(pruned(_items(library), sorted(asked_for)))}{after}"
+
+
+@lru_cache(maxsize=64)
+def _items(library: str) -> list[Item]:
+    """The library of one shader: few scenes have one of their own."""
+    return parse(library)
 
 
 def _read(params: list[Variable], text: str) -> list[Variable]:

@@ -43,12 +43,12 @@ class BlendWriter:
             body.once(f"vec2 v_{leaf.part.name} = {self._line(body, leaf, directions)};", leaf.part.span)
         arguments = ", ".join(f"v_{part.name}" for part in parts)
         body.once(f"float v_{name} = {name}_ahead(0.0, {arguments});", blend.part.span)
-        sunk = "3.0 * fine" if cut else "0.0"
+        fine = "0.5 * fine - sunk" if cut else "0.5 * fine"
         left = f"left_{name}{'_cut' if cut else ''}"
-        body.once(f"float {left} = {name}_clear(v_{name}, 0.5 * fine - {sunk}, {arguments});")
+        body.once(f"float {left} = {name}_clear(v_{name}, {fine}, {arguments});")
         least = literal(1.0 / max(blend.lipschitz, 1e-9))
         step = f"max({left}, {least} * v_{name})" if blend.lipschitz != 1.0 else f"max({left}, v_{name})"
-        value = f"v_{name} + {sunk}" if cut else f"v_{name}"
+        value = f"v_{name} + sunk" if cut else f"v_{name}"
         return f"ball(t, {value} <= fine ? {value} : {step}, fine)"
 
     def _line(self, body: Body, leaf: BlendLeaf, directions: dict[int, Expr]) -> str:

@@ -8,7 +8,8 @@ calls of min, and compiles the chain to better code than a tree of temporaries (
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import TypeAlias
 
 from sdfc.field.function import Function
@@ -37,13 +38,16 @@ def print_function(function: Function, name: str | None = None) -> str:
     renamed = {name: scope.fresh(name) for name, _ in function.parameters}
     own = {name for name, _ in function.parameters}
     assert all(n.value in own for n in nodes if n.op is Op.INPUT), f"{function.name} reads what is no parameter of it"
-    printer = Printer(lambda e: renamed[str(e.value)] if e.op is Op.INPUT else None, scope)
+    printer = Printer(lambda e: renamed[str(e.value)] if e.op is Op.INPUT else None, scope, function.names)
     lines, (result,) = printer.statements([function.result])
     parameters = ", ".join(f"{type_name(type_)} {renamed[name]}" for name, type_ in function.parameters)
     doc = [f"// {line}".rstrip().rstrip("\\") for line in function.doc.splitlines()]
     head = f"{type_name(function.result.type)} {name or identifier(function.name)}({parameters}) {{"
     body = [f"    {line}" for line in (*lines, f"return {result};")]
     return "\n".join([*doc, head, *body, "}"]) + "\n"
+
+
+_NOTHING: Mapping[Expr, str] = MappingProxyType({})
 
 
 def _no_names(_: Expr) -> None:
@@ -54,12 +58,16 @@ class Printer:
     """Prints expressions for one scope of GLSL; the locals of later calls never repeat the names of earlier ones.
 
     `names` gives the text of a node that is there already, or None; what is below such a node is not printed. `scope`
-    holds the identifiers that locals must not take; names given for nodes are added to it.
+    holds the identifiers that locals must not take; names given for nodes are added to it. What is `called` something
+    is a local of that name.
     """
 
-    def __init__(self, names: NamesOf = _no_names, scope: Names | None = None) -> None:
+    def __init__(
+        self, names: NamesOf = _no_names, scope: Names | None = None, called: Mapping[Expr, str] = _NOTHING
+    ) -> None:
         self._names = names
         self._scope = Names() if scope is None else scope
+        self._called = called
 
     def statements(self, roots: Iterable[Expr]) -> tuple[list[str], list[str]]:
         """Declarations of locals, and one text for each root.
@@ -67,15 +75,16 @@ class Printer:
         A text may be any expression: bracket it before putting it beside an operator.
         """
         roots = list(roots)
-        block = _Block(self._names, self._scope, roots)
+        block = _Block(self._names, self._scope, roots, self._called)
         return block.lines, [block.text_of(root).text for root in roots]
 
 
 class _Block:
     """The printing of some roots: every node in order of evaluation, its text inline or a local's name."""
 
-    def __init__(self, names: NamesOf, scope: Names, roots: Sequence[Expr]) -> None:
+    def __init__(self, names: NamesOf, scope: Names, roots: Sequence[Expr], called: Mapping[Expr, str]) -> None:
         self.lines: list[str] = []
+        self._called = called
         self._scope = scope
         self._texts: dict[int, Text] = {}
         self._name_leaves(names, roots)
@@ -120,7 +129,7 @@ class _Block:
         self._texts[node.id] = text
         if node.id in self._spine:
             self._update(node)
-        elif self._uses[node.id] > 1 and not self._is_trivial(node):
+        elif (self._uses[node.id] > 1 or node in self._called) and not self._is_trivial(node):
             self._declare(node)
 
     def _composed(self, node: Expr) -> Text:
@@ -154,7 +163,8 @@ class _Block:
         self._texts[node.id] = Text(self._local(node, self._texts[node.id].text), is_name=True)
 
     def _local(self, node: Expr, text: str) -> str:
-        name = self._scope.fresh("q" if node.type.size > 1 else _LOCAL_NAMES[node.op])
+        usual = "q" if node.type.size > 1 else _LOCAL_NAMES[node.op]
+        name = self._scope.fresh(self._called.get(node, usual))
         self.lines.append(f"{type_name(node.type)} {name} = {text};")
         return name
 

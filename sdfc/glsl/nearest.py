@@ -40,6 +40,7 @@ class NearestWriter(SurfaceWriter):
         slopes: dict[int, float],
     ) -> None:
         super().__init__(graph, functions, live, materials, None)
+        self._names = {id(m): functions.names.fresh(f"{m.name}_nearest") for m in materials}
         self._slopes = slopes  # the Lipschitz constant of each part's formula, by id
 
     def write(self, root: Step) -> SurfaceText:

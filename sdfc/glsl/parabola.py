@@ -20,7 +20,7 @@ def parabola_next(graph: FieldGraph, functions: Functions, body: Body, step: Bal
     least = graph.constant(1.0 / max(step.lipschitz, 1e-9))
     radius = f"{name}.x" if _is_one(least) else f"{body.text(least)} * {name}.x"
     bend = graph.max(step.bend * part.own_grow * part.own_grow * part.stretch, 1e-6)
-    sunk, eps = ("3.0 * fine + ", "fine") if cut else ("", "eps")
+    sunk, eps = ("sunk + ", "fine") if cut else ("", "eps")
     return f"parabola(t, {sunk}{radius}, {name}.yz, {body.text(bend)}, {eps})"
 
 

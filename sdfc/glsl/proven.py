@@ -16,6 +16,7 @@ from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
 from sdfc.glsl.parabola import parabola_next
+from sdfc.glsl.piece import piece_next
 from sdfc.glsl.scope import Intervals, Scope
 from sdfc.plan.plan import FINE
 from sdfc.plan.steps import (
@@ -168,7 +169,11 @@ class ProvenWriter:
         inner.add("t = next;")
         inner.add("vec3 p = o + t * d;")
         inner.add("float eps = tolerance(t), fine = rounding(t);")
-        inner.add(f"next = {self._next(root, Scope(inner, intervals, directions, {}))};")
+        text = f"next = {self._next(root, Scope(inner, intervals, directions, {}))};"
+        if any("sunk" in line for line in [*inner.lines, text]):
+            # where it arrives, not where it comes from: an eye far away must not step through what is thin
+            inner.lines.insert(3, "        float sunk = 3.0 * rounding(max(t, 0.0));")
+        inner.add(text)
         inner.add("steps += 1.0;")
         inner.add("evaluations += 1.0;")
         inner.add("count += 1;")
@@ -197,6 +202,8 @@ class ProvenWriter:
             case Any() | All():
                 for child in step.steps:
                     self._boxes(body, child)
+            case Ball() if step.ahead:
+                body.once(f"float {step.ahead} = FAR;")
             case Closed() | Many() | Tangent() | Ball() | Blend():
                 pass
             case _:
@@ -213,7 +220,7 @@ class ProvenWriter:
             match leaf:
                 case Tangent(part=part) | Chord(part=part):
                     parts = [part]
-                case Ball(part=part) if leaf.bend is not None:
+                case Ball(part=part) if leaf.bend is not None or leaf.ahead:
                     parts = [part]
                 case Blend():
                     parts = self._blends.convex_parts_of(leaf)
@@ -260,7 +267,7 @@ class ProvenWriter:
             case Tangent() | Chord() | Ball() | Blend():
                 return self._asked_once(step, scope)
             case Within():
-                return f"inside({step.name}, t, {self._next(step.step, scope)})"
+                return f"inside({step.name}, t, {self._next(step.step, replace(scope, box=step.name))})"
             case Any():
                 return self._joined("min", "near", [self._next(s, scope) for s in step.steps], scope)
             case All():
@@ -282,7 +289,7 @@ class ProvenWriter:
         match step:
             case Tangent():
                 value = self._blends.slope(scope.body, step.part, scope.directions[id(step.part)])
-                return f"tangent(t, {f'vec2(3.0 * fine, 0.0) + {value}' if scope.cut else value}, fine)"
+                return f"tangent(t, {f'vec2(sunk, 0.0) + {value}' if scope.cut else value}, fine)"
             case Chord():
                 return self._chord(step, scope.body, scope.directions[id(step.part)])
             case Ball():
@@ -352,6 +359,9 @@ class ProvenWriter:
 
     def _ball(self, step: Ball, scope: Scope) -> str:
         part, body = step.part, scope.body
+        if step.ahead:
+            direction = scope.directions[id(part)]
+            return piece_next(self._graph, self._functions, body, step, direction, scope.box, scope.cut)
         if step.bend is not None:
             direction = scope.directions[id(part)]
             return parabola_next(self._graph, self._functions, body, step, direction, scope.cut)
@@ -362,7 +372,7 @@ class ProvenWriter:
             value = f"{body.text(scale)} * {value}"
         eps = "fine" if scope.cut else "eps"
         if step.inside:
-            return f"ball(t, {'3.0 * fine + ' if scope.cut else ''}{value}, {eps})"
+            return f"ball(t, {'sunk + ' if scope.cut else ''}{value}, {eps})"
         return f"ball(t, 3.0 * {eps} - {value}, {eps})"
 
     def _function(self, head: str, body: Body, doc: str) -> None:

@@ -34,3 +34,4 @@ class Scope:
     core: bool = False
     twice: bool = False
     skin: Expr | None = None
+    box: str = ""  # what the step lies within, if anything

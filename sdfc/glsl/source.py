@@ -166,7 +166,7 @@ def _trailing(tokens: list[str], index: int) -> str:
 
 def _is_block(code: Sequence[str]) -> bool:
     """Whether the braces are those of a uniform block."""
-    return "uniform" in code[:3] or any(word.startswith("layout") for word in code[:1]) and "uniform" in code[:6]
+    return "uniform" in code[:6] and code[0].startswith(("layout", "uniform"))
 
 
 def _item(held: Sequence[str], note: str) -> Item:

@@ -166,8 +166,7 @@ class SurfaceWriter:
                 return self._leaf(step.part, body, step.inside, Role.SURFACE, _NOWHERE)
             case Ball():
                 # over its constant: then the gradient says how much of a distance the value is
-                scale = 1.0 / max(step.lipschitz, 1e-9)
-                return self._leaf(step.part, body, step.inside, Role.SURFACE, sunk, scale)
+                return self._leaf(step.part, body, step.inside, Role.SURFACE, sunk, step.scale)
             case Tangent():
                 return self._leaf(step.part, body, True, Role.SURFACE, sunk)
             case Chord():

@@ -116,10 +116,19 @@ class Invocation:
         """The children, without nothings, and all in the plane or all in space: as the first of them is."""
         made = [child for child in self.children if child is not None]
         kept = [child for child in made if type(child) is type(made[0])]
-        if len(kept) < len(made):
-            other = "in space" if isinstance(made[0], Flat) else "in the plane"
-            self.context.warn(f"`{self.call.name}` mixes 2D and 3D: what is {other} is left out", self.span)
+        for index, child in enumerate(self.children if len(kept) < len(made) else ()):
+            if child is not None and type(child) is not type(made[0]):
+                self._leave_out(index, "in space" if isinstance(made[0], Flat) else "in the plane")
         return kept
+
+    def _leave_out(self, index: int, where: str) -> None:
+        """Says so at the first call below the child that has none below it: what the file's author drew there."""
+        call = self.call.shown[index]
+        while call.shown:
+            call = call.shown[0]
+        first = "space" if where == "in the plane" else "the plane"
+        message = f"`{call.name}` is {where} and left out: what stands first is in {first}"
+        self.context.warn(message, call.span(self.context.source))
 
     def flats(self) -> list[Plane]:
         """The children in the plane. Solids are left out, with a warning."""

@@ -22,7 +22,6 @@ from sdfc.shape.graph import Shape, ShapeGraph
 
 UP = (0.0, 0.0, 1.0)
 THICKNESS = 1.0  # of a file that is all in the plane, as in OpenSCAD's preview
-_LEFT_OUT = frozenset("%*")
 
 
 def load(source: Source) -> Scene:
@@ -73,7 +72,7 @@ def _evaluate(context: Context, root: Call) -> Part | None:
     stack: list[tuple[Call, bool, bool]] = [(root, False, False)]
     while stack:
         call, is_painted, expanded = stack.pop()
-        kept = [child for child in call.children if not _LEFT_OUT.intersection(child.modifiers)]
+        kept = call.shown
         if expanded:
             first = len(results) - len(kept)
             children = results[first:]

@@ -20,6 +20,9 @@ class Argument:
     end: int
 
 
+_LEFT_OUT = frozenset("%*")
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Call:
     """`name(arguments) { children }`, with its modifiers (`%`, `#`, `!`, `*`) in front; its place is the name's."""
@@ -30,6 +33,11 @@ class Call:
     children: tuple[Call, ...] = field(repr=False)
     start: int
     end: int
+
+    @property
+    def shown(self) -> tuple[Call, ...]:
+        """The children without those that `%` and `*` leave out."""
+        return tuple([child for child in self.children if not _LEFT_OUT.intersection(child.modifiers)])
 
     def span(self, source: Source) -> Span:
         return Span(source, self.start, self.end)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from sdfc.diagnostics import scene_error
@@ -36,6 +37,11 @@ def frame_of(root: Shape, bounds: Bounds) -> Frame:
         raise scene_error(f"the scene is less than {SMALLEST_RADIUS:g} across", root.span, "give it sizes nearer to 1")
     x, y, z = box.centre
     return Frame((x, y, z), box.radius, box, whole.is_finite)
+
+
+def is_plain(frame: Frame) -> bool:
+    """Whether float32 has digits enough for the scene where it is: of middling size, and not far off its origin."""
+    return 0.01 <= frame.radius <= 100.0 and math.hypot(*frame.centre) <= 2.0 * frame.radius
 
 
 def own_origin(root: Shape, graph: ShapeGraph, values: FieldGraph, frame: Frame) -> Shape:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import assert_never
 
 from sdfc.passes.own_origin import Frame
@@ -63,7 +64,7 @@ def _tree(step: Step, depth: int) -> list[str]:
             return [f"{pad}complement of {step.part.name} ({step.part.span}): {reason}"]
         case Ball():
             side = "" if step.inside else "complement of "
-            reason = f"Lipschitz balls, constant {step.lipschitz:.4g}{_bend(step)}{_left_out(step.part)}"
+            reason = f"{_balls(step)}{_left_out(step.part)}"
             return [f"{pad}{side}{step.part.name} ({step.part.span}): {reason}"]
         case Blend():
             reason = "the blend of lines below its operands (tangents, where they are convex), which is concave"
@@ -78,8 +79,14 @@ def _left_out(part: Part) -> str:
     return "; a closed form is known, dearer here than marching" if known else ""
 
 
-def _bend(step: Ball) -> str:
+def _balls(step: Ball) -> str:
+    why = f" ({step.why})" if step.why else ""
+    if not math.isfinite(step.lipschitz):
+        return f"bounds of its slope over the piece of the ray ahead{why}"
+    balls = f"Lipschitz balls, constant {step.lipschitz:.4g}"
+    if step.ahead:
+        return f"{balls}, and bounds of its slope over the piece of the ray ahead{why}"
     if step.bend is None:
-        return ": no parabola below it is known that pays"
+        return f"{balls}: nothing else is known that pays{why}"
     worst = f"at most {step.bend.number:.4g}" if step.bend.is_constant else "no more than the params' values say"
-    return f", and parabolas: it bends down by {worst}"
+    return f"{balls}, and parabolas: it bends down by {worst}{why}"

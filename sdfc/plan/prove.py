@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias, assert_never
 
 from sdfc.diagnostics import SceneError, scene_error
-from sdfc.facts.bend import Bends
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box, everything
 from sdfc.facts.curvature import convex_shapes
 from sdfc.facts.lipschitz import Lipschitz
+from sdfc.facts.rule import Rules
 from sdfc.field.graph import FieldGraph
 from sdfc.plan.gather import gathered
 from sdfc.plan.steps import (
@@ -39,7 +39,7 @@ from sdfc.shape.stretch import largest_stretch, smallest_stretch
 
 Rays: TypeAlias = Literal["cheap", "all"]
 
-_OURS = frozenset({"bounds", "solid", "live", "joined", "near", "far"})  # generated names begin so, and end in a number
+_OURS = frozenset({"bounds", "solid", "live", "joined", "near", "far", "ahead"})  # generated names begin so, and end in a number
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +87,8 @@ def unwrapped(shape: Shape) -> Leaf | None:
 class Prover:
     """Builds the step tree of one scene.
 
-    `rays`: which closed forms it uses, those that are dear among them or not. Without `bends` nothing is stepped by
-    parabolas.
+    `rays`: which closed forms it uses, those that are dear among them or not. Without `rules` what has no closed form
+    is stepped by balls.
     """
 
     def __init__(
@@ -98,18 +98,19 @@ class Prover:
         lipschitz: Lipschitz,
         unpainted: Material,
         rays: Rays,
-        bends: Bends | None = None,
+        rules: Rules | None = None,
     ) -> None:
         self._values = values
         self._bounds = bounds
         self._lipschitz = lipschitz
         self._unpainted = unpainted
         self._rays = rays
-        self._bends = bends
+        self._rules = rules
         self._names: Counter[str] = Counter()
         self._parts: dict[tuple[int, int], Part] = {}
         self._convex: frozenset[int] = frozenset()
         self._boxes = 0
+        self._pieces = 0
         self._leaves: list[Leaf] = []
         self._interval_counts: dict[int, int] = {}
 
@@ -177,14 +178,24 @@ class Prover:
         needed = not self._lipschitz.is_global(leaf.placed)
         if needed and not where.is_finite:
             return step  # found over everything: it holds everywhere
-        return self._within(where, step, needed) if where.is_finite and (leaf.inside or needed) else step
+        boxed = leaf.inside or needed or _is_by_pieces(step)
+        return self._within(where, step, needed) if where.is_finite and boxed else step
 
     def _ball(self, part: Part, leaf: Leaf, where: Box) -> Ball:
-        lipschitz = self._lipschitz.constant(leaf.placed, where)
-        if self._bends is None or not leaf.inside or not where.is_finite:
-            return Ball(part, lipschitz, leaf.inside)
+        if self._rules is None or not where.is_finite:
+            return Ball(part, self._lipschitz.constant(leaf.placed, where), leaf.inside)
         own = where if leaf.affine is None else self._bounds.moved(leaf.affine.inverse, where)
-        return Ball(part, lipschitz, leaf.inside, self._bends.worthwhile(leaf.shape, own, lipschitz))
+        lipschitz, unknown = math.inf, None
+        try:
+            lipschitz = self._lipschitz.constant(leaf.placed, where)
+        except SceneError as error:
+            unknown = error
+        rule = self._rules.best(leaf.shape, own, lipschitz, leaf.inside)
+        if rule is None:
+            raise unknown or AssertionError("there is a ball at the least")
+        self._pieces += rule.by_pieces
+        ahead = f"ahead_{self._pieces}" if rule.by_pieces else ""
+        return Ball(part, lipschitz, leaf.inside, rule.bend, ahead, rule.why)
 
     def _within(self, box: Box, step: Step, needed: bool) -> Within:
         self._boxes += 1
@@ -276,6 +287,14 @@ def _is_bare(shape: Shape, painted: set[int]) -> bool:
     match shape:
         case Apply():
             return shape.definition.is_primitive and shape.dimension == 3 and shape.id not in painted
+        case _:
+            return False
+
+
+def _is_by_pieces(step: Step) -> bool:
+    match step:
+        case Ball(ahead=ahead):
+            return bool(ahead)
         case _:
             return False
 

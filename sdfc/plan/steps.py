@@ -7,6 +7,7 @@ an intersection the greatest; a ray hits where the tree answers t, and misses wh
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TypeAlias, assert_never
 
@@ -79,13 +80,21 @@ class Ball:
     """A field known to be Lipschitz: the empty ball around the point.
 
     With `bend`, also the parabola below it: along a line of unit speed in the part's own space its core (facts/bend.py)
-    falls no faster than f + f' x - bend x x / 2.
+    falls no faster than f + f' x - bend x x / 2. With `ahead`, also bounds of its value and slope over the piece of the
+    ray ahead: so is named how long that is, which the ray remembers. Then the constant may be infinite: no ball.
     """
 
     part: Part
     lipschitz: float
     inside: bool = True
     bend: Expr | None = None
+    ahead: str = ""
+    why: str = ""  # this rule: what rays that were tried took by each
+
+    @property
+    def scale(self) -> float:
+        """What makes a value at most a distance; 1 where no constant is known, and it says nothing of a distance."""
+        return 1.0 / max(self.lipschitz, 1e-9) if math.isfinite(self.lipschitz) else 1.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,6 +13,7 @@ from sdfc.field.derivative import directional, gradient
 from sdfc.field.function import Function
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.field.numeric import Evaluator
+from sdfc.field.span import span
 from sdfc.plan.steps import Part
 from sdfc.shape.definition import Environment, Kind
 from sdfc.shape.graph import Apply
@@ -137,6 +138,19 @@ class Formulas:
         found = self._evaluate("parabola", own.owner, roots, inputs, own.arguments)
         value, core, along = (np.broadcast_to(a, p.shape[1:]) * own.stretch for a in found)
         return value, core, along
+
+    def span(self, part: Part, p: Array, d: Array, length: Array) -> tuple[Array, Array, Array, Array]:
+        """Least and greatest value of the part's formula, and of its slope along d, over pieces of rays, (n,) each."""
+        own = self._own(part)
+
+        def roots() -> list[Expr]:
+            found = span(self._formula(part, own), self._p, self._d, self._graph.input("s", Type.FLOAT))
+            return [*found.value, *found.slope]
+
+        inputs = {"p": own.point(p), "d": own.direction(d), "s": length}
+        found = self._evaluate("span", own.owner, roots, inputs, own.arguments)
+        low, high, fall, rise = (np.broadcast_to(a, p.shape[1:]) * own.stretch for a in found)
+        return low, high, fall, rise
 
     def bend(self, part: Part, bend: Expr) -> float:
         """The bend of a part's core along the scene's rays, from the one in its own space."""

@@ -19,7 +19,7 @@ from sdfc.reference.search import Advance, Array, Index, Level, Mask, Rays, adva
 
 NOBODY = -1
 MOST_TURNS = 8  # of all parts, to prove together what none proves alone
-WORTHWHILE = 100_000  # nodes of a part times rays: for less it takes longer to find its region than to do without
+WORTHWHILE = 40_000  # nodes of a part times rays: for less it takes longer to find its region than to do without
 
 Progress = Callable[[float], None]
 
@@ -64,8 +64,9 @@ class Parts:
         everyone, nobody = np.arange(start.size), np.full(start.size, NOBODY)
         clearance = np.inf
         self._clear[:] = start
+        reach = np.maximum(np.abs(start), np.abs(end))
         for i, part in enumerate(self._each):
-            region = region_of(part, level, self._rays, end) if part.size * start.size >= WORTHWHILE else None
+            region = region_of(part, level, self._rays, reach) if part.size * start.size >= WORTHWHILE else None
             if region is not None:
                 enter, self._leave[i] = region.interval(self._rays)
                 np.maximum(self._clear[i], enter, out=self._clear[i])

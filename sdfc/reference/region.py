@@ -19,8 +19,9 @@ from sdfc.reference.search import Array, Mask, Rays
 ROUNDS = 60  # of cutting
 MOST_CELLS = 2048  # at once
 BUDGET = 2**14  # cells that are looked at in all
-FINE = 0.125  # of the box: what is narrower is cut only where that proves it,
+FINE = 0.125  # of the box: cells that are narrower in all directions are cut only where that proves a cell,
 FINEST = FINE / 64.0  # and not below this
+FLAT = 0.25  # of a cell's width: nor are flat cells made flatter but for a proof
 WHOLE = -1
 LARGEST = float(np.finfo(np.float64).max)
 FARTHEST = 2.0**60  # no cells are made beyond
@@ -48,7 +49,7 @@ class Region:
 
 
 def region_of(evaluator: IntervalEvaluator, level: float, rays: Rays, end: Array) -> Region | None:
-    """The region of a function within reach of the rays up to `end`, or None where it is not bounded or not found."""
+    """The region of a function within the rays' -end <= t <= end; None where it is not bounded or not found."""
     inner = 2.0 ** np.ceil(np.log2(max(1.0, float(np.abs(rays.o).max(initial=0.0)))))
     reach = float((np.abs(rays.o).max(axis=0) + np.abs(end) * rays.speed).max(initial=0.0))
     if not reach < FARTHEST or not np.isfinite(rays.o).all():
@@ -105,9 +106,11 @@ class _Cutter:
         bound = self._bound(flat_lo, flat_hi).reshape(3, count)
         proves = bound > self._level
         size = (all_left[1].max(axis=1) - all_left[0].min(axis=1))[:, None]
-        may_cut = (hi - lo > FINE * size) | (proves & (hi - lo > FINEST * size))
+        width = hi - lo
+        coarse = (width > FINE * size).any(axis=0)
+        may_cut = (coarse & (width > FLAT * width.max(axis=0))) | (proves & (width > FINEST * size))
         # of equals the widest
-        bound += 1e-9 * np.abs(bound) * (hi - lo) / np.max(hi - lo)
+        bound += 1e-9 * np.abs(bound) * width / np.max(width)
         best = np.argmax(np.where(may_cut, np.maximum(bound, -LARGEST), -np.inf), axis=0)
         return np.where(may_cut.any(axis=0), best, WHOLE)
 

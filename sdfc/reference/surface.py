@@ -109,7 +109,7 @@ class SurfaceFold:
                 return self._leaf(step.part, place, step.inside, np.zeros_like(sunk))
             case Ball():
                 # over its constant: then the gradient says how much of a distance the value is
-                return self._leaf(step.part, place, step.inside, sunk, scale=1.0 / max(step.lipschitz, 1e-9))
+                return self._leaf(step.part, place, step.inside, sunk, scale=step.scale)
             case Tangent():
                 return self._leaf(step.part, place, True, sunk)
             case Chord():

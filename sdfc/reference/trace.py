@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sdfc.facts.box import Box, everything, nothing
 from sdfc.field.graph import Expr
+from sdfc.field.piece import SHORT, look
 from sdfc.plan.plan import FINE, Plan
 from sdfc.plan.steps import (
     All,
@@ -51,6 +52,7 @@ class _Walk:
     rays: Rays
     intervals: dict[tuple[int, Side, float], list[Interval]]
     boxes: dict[int, tuple[Array, Array]]
+    ahead: dict[str, Array]  # how far to look, by the name of what remembers it
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +66,7 @@ class _Mode:
     cut: bool = False
     core: bool = False
     skin: float = 1.0
+    box: int | None = None  # what the step lies within, by id
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +134,7 @@ class StepTracer:
 
     def _walk(self, member: Step, rays: Rays) -> _Walk:
         boxes = {id(step): box_interval(rays, box) for step, box in _boxes_below(member)}
-        return _Walk(rays, {}, boxes)
+        return _Walk(rays, {}, boxes, {})
 
     def _intervals(self, leaf: Closed, walk: _Walk, mode: _Mode) -> list[Interval]:
         """The rays' intervals with a leaf, found when they are first asked for."""
@@ -168,6 +171,8 @@ class StepTracer:
                 return self._tangent(step.part, here, mode.cut)
             case Chord():
                 return self._chord(step, walk, here)
+            case Ball() if step.ahead:
+                return self._piece(step, walk, here, mode)
             case Ball():
                 return self._ball(step, here, mode.cut)
             case Blend():
@@ -178,7 +183,7 @@ class StepTracer:
                 answers = [self._next(s, walk, here, mode) for s in members_of(step)]
                 return _least(answers) if answers else np.full(len(here.t), FAR)
             case All():
-                return self._all(step, walk, here, _Mode(True, mode.core, self._skin(step)))
+                return self._all(step, walk, here, _Mode(True, mode.core, self._skin(step), mode.box))
             case _:
                 assert_never(step)
 
@@ -226,7 +231,7 @@ class StepTracer:
         answer = np.where((here.t < enter) & (enter < leave), enter, FAR)
         inside = np.flatnonzero((here.t >= enter) & (here.t < leave))
         if inside.size:
-            ahead = self._next(step.step, walk, here.take(inside), mode)
+            ahead = self._next(step.step, walk, here.take(inside), replace(mode, box=id(step)))
             answer[inside] = np.where(ahead < leave[inside], ahead, FAR)
         return answer
 
@@ -276,6 +281,23 @@ class StepTracer:
         clear = np.where(falling, 2.0 * above / np.where(falling, fall + root, 1.0), (root - fall) / bend)
         ahead = np.maximum(radius, np.where(core > 0.0, clear, 0.0))
         return np.where(ahead <= near, here.t, here.t + ahead * SHY)
+
+    def _piece(self, step: Ball, walk: _Walk, here: _Place, mode: _Mode) -> Array:
+        """As far as bounds over the piece of the ray ahead prove it empty, or by the empty ball where that is more."""
+        assert mode.box is not None
+        near = finest(here.t) if mode.cut else self.tolerance(here.rays, here.t)
+        enter, leave = (end[here.index] for end in walk.boxes[mode.box])
+        remembered = walk.ahead.setdefault(step.ahead, np.full(len(walk.rays), FAR))
+        length = np.where(here.t <= enter, FAR, remembered[here.index])
+        length = np.maximum(np.minimum(length, leave - np.maximum(here.t, enter)), SHORT * near)
+        p, d = here.rays.at(here.t), here.rays.d
+        value, span = self._formulas.value(step.part, p), self._formulas.span(step.part, p, d, length)
+        sunk = 3.0 * near if mode.cut else np.zeros_like(near)
+        if not step.inside:  # a hit on what is cut away lies inside it, by more than its own tolerance
+            low, high, fall, rise = span
+            value, span, sunk = -value, (-high, -low, -rise, -fall), 3.0 * near
+        clear, there, remembered[here.index] = look(length, value, span, step.lipschitz, sunk, near)
+        return np.where(there, here.t, here.t + np.maximum(clear * SHY, 2.0**-52 * np.maximum(1.0, np.abs(here.t))))
 
     def _blend(self, step: Blend, here: _Place, cut: bool) -> Array:
         """A smooth union by empty balls: slower than by the lines below its operands, and as safe."""

@@ -18,7 +18,7 @@ from sdfc.scene.limits import DEEPEST_FRAMES
 from sdfc.scene.model import Camera, Light, Scene, Sky
 from sdfc.scene.module import FileModule
 from sdfc.scene.names import Context, Problems
-from sdfc.scene.unused import recursion, unused
+from sdfc.scene.unused import recursion, shadowing, unused
 from sdfc.shape.graph import Shape, ShapeGraph
 from sdfc.syntax import tree
 from sdfc.syntax.parse import parse
@@ -80,7 +80,7 @@ def _scene(module: FileModule, folder: Folder, problems: Problems) -> Scene | No
     context.budget.is_over = True
     if root is None:
         return None
-    warnings = list(dict.fromkeys([*context.warnings, *unused(module)]))
+    warnings = list(dict.fromkeys([*context.warnings, *shadowing(module), *unused(module)]))
     return Scene(
         source=module.file.source,
         values=context.graph,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sdfc.diagnostics import Diagnostic
+from sdfc.scene.library import standard_names
 from sdfc.scene.module import FileModule
 from sdfc.syntax import tree
 from sdfc.syntax.walk import mentions
@@ -30,6 +31,20 @@ def unused(module: FileModule) -> list[Diagnostic]:
         Diagnostic(f"the {_WORDS[type(declaration)]} '{name}' is never used", declaration.name.span, None, "warning")
         for name, declaration in module.own.items()
         if name not in reached
+    ]
+
+
+def shadowing(module: FileModule) -> list[Diagnostic]:
+    """A warning for each function of the scene's own file that takes the name of a standard field."""
+    return [
+        Diagnostic(
+            f"'{name}' is also a shape or an operation of the library, which this hides",
+            declaration.name.span,
+            "give it another name",
+            "warning",
+        )
+        for name, declaration in _functions(module)
+        if name in standard_names()
     ]
 
 

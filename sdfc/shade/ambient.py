@@ -53,10 +53,14 @@ def ambient(graph: FieldGraph) -> Function:
     colors = sky_colors(graph)
     look = surface(graph)
     n_v = graph.clamp(graph.dot(normal, view), GRAZING, 1.0)
-    matt = look.diffuse * (1.0 - dielectric_albedo(n_v, look.roughness))
-    diffuse = matt * mean_under_cosine(height_of(normal, up), colors) * several_bounces(occlusion, look.diffuse)
+    albedo, sky = dielectric_albedo(n_v, look.roughness), mean_under_cosine(height_of(normal, up), colors)
+    bounces = several_bounces(occlusion, look.diffuse)
+    diffuse = look.diffuse * (1.0 - albedo) * sky * bounces
     mirrored = gradient(height_of(reflect(view, normal), up), colors, square(look.roughness))
-    specular = sky_reflected(look, n_v) * mirrored * specular_occlusion(n_v, occlusion, look.roughness)
+    reflectance, unhidden = sky_reflected(look, n_v), specular_occlusion(n_v, occlusion, look.roughness)
+    specular = reflectance * mirrored * unhidden
+    names = {n_v: "n_dot_v", albedo: "albedo", sky: "sky_around", bounces: "bounced", mirrored: "sky_mirrored"}
+    names |= {reflectance: "reflectance", unhidden: "unhidden", diffuse: "diffuse", specular: "specular", **look.names}
     return Function(
         "ambient",
         (
@@ -69,6 +73,7 @@ def ambient(graph: FieldGraph) -> Function:
         ),
         diffuse + specular,
         "Radiance (VEC3) from the sky; `occlusion` is 1 in the open and 0 where no sky is seen.",
+        names,
     )
 
 

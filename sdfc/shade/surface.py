@@ -43,6 +43,11 @@ class Surface:
     normal_reflectance: Expr  # VEC3: F0
     roughness: Expr
 
+    @property
+    def names(self) -> dict[Expr, str]:
+        """What these are called in print."""
+        return {self.diffuse: "unabsorbed", self.normal_reflectance: "head_on", self.roughness: "rough"}
+
 
 def surface(graph: FieldGraph) -> Surface:
     """The surface that the INPUT nodes of `SURFACE` describe."""
@@ -84,7 +89,7 @@ def between_facets(look: Surface) -> Expr:
     return square(fresnel_mean) * (1.0 - gone) / (1.0 - fresnel_mean * gone)
 
 
-def _microfacets(half: Expr, normal: Expr, n_l: Expr, n_v: Expr, alpha: Expr) -> Expr:
+def _microfacets(half: Expr, normal: Expr, n_l: Expr, n_v: Expr, alpha: Expr, names: dict[Expr, str]) -> Expr:
     """D V: the distribution times the visibility (which has the denominator 4 (n·l) (n·v) in it)."""
     graph = normal.graph
     across = graph.cross(normal, half)
@@ -92,9 +97,10 @@ def _microfacets(half: Expr, normal: Expr, n_l: Expr, n_v: Expr, alpha: Expr) ->
     scaled = saturate(graph.dot(normal, half)) * alpha
     spread = alpha / (graph.dot(across, across) + square(scaled) + 1e-12)
     alpha_2 = square(alpha)
-    towards_light = n_v * graph.sqrt(square(n_l) * (1.0 - alpha_2) + alpha_2)
-    towards_view = n_l * graph.sqrt(square(n_v) * (1.0 - alpha_2) + alpha_2)
-    return square(spread) * (0.5 / math.pi) / (towards_light + towards_view)
+    smith_light = n_v * graph.sqrt(square(n_l) * (1.0 - alpha_2) + alpha_2)
+    smith_view = n_l * graph.sqrt(square(n_v) * (1.0 - alpha_2) + alpha_2)
+    names |= {across: "across", alpha: "alpha", spread: "spread", smith_light: "smith_light", smith_view: "smith_view"}
+    return square(spread) * (0.5 / math.pi) / (smith_light + smith_view)
 
 
 def reflect_light(graph: FieldGraph) -> Function:
@@ -104,18 +110,24 @@ def reflect_light(graph: FieldGraph) -> Function:
     n_l = saturate(graph.dot(normal, light))
     n_v = graph.clamp(graph.dot(normal, view), GRAZING, 1.0)
     half = normalize(view + light)
+    names = {n_l: "n_dot_l", n_v: "n_dot_v", half: "halfway", **look.names}
     fresnel = fifth_power(saturate(1.0 - graph.dot(view, half)))
     facets = mix(look.normal_reflectance, graph.constant(1.0, 1.0, 1.0), fresnel)
-    once = facets * _microfacets(half, normal, n_l, n_v, square(look.roughness))
-    lost_both = lost(n_l, look.roughness) * lost(n_v, look.roughness)
-    again = between_facets(look) * (lost_both / (math.pi * lost_mean(look.roughness)))
-    left = (1.0 - dielectric_albedo(n_l, look.roughness)) * (1.0 - dielectric_albedo(n_v, look.roughness))
+    once = facets * _microfacets(half, normal, n_l, n_v, square(look.roughness), names)
+    lost_light, lost_view, mean = lost(n_l, look.roughness), lost(n_v, look.roughness), lost_mean(look.roughness)
+    again = between_facets(look) * (lost_light * lost_view / (math.pi * mean))
+    albedo_light, albedo_view = dielectric_albedo(n_l, look.roughness), dielectric_albedo(n_v, look.roughness)
+    left = (1.0 - albedo_light) * (1.0 - albedo_view)
     diffuse = look.diffuse * (left / (math.pi * (1.0 - polynomial(look.roughness, _DIELECTRIC_MEAN))))
+    names |= {fresnel: "fresnel", facets: "facets", once: "one_bounce", again: "more_bounces", diffuse: "diffuse"}
+    names |= {lost_light: "lost_light", lost_view: "lost_view", mean: "lost_mean"}
+    names |= {albedo_light: "albedo_light", albedo_view: "albedo_view"}
     return Function(
         "reflect_light",
         (("normal", Type.VEC3), ("view", Type.VEC3), ("light", Type.VEC3), *SURFACE),
         (diffuse + once + again) * n_l,
         "BRDF times n·l (VEC3). Unit vectors: normal, view (to the eye), light (to the light).",
+        names,
     )
 
 

@@ -19,7 +19,7 @@ class Parameter:
 
 
 _ALONG = "a ray along a surface takes more passes than there are"
-STALLS = dict.fromkeys(("tangent", "edge", "axis", "far", "flush"), _ALONG) | {
+STALLS = dict.fromkeys(("tangent", "edge", "axis", "far", "flush", "random"), _ALONG) | {
     "distance": "from a million radii a ray that passes close by may be taken for a hit"
 }
 """Where all are weak that step by the distance alone."""

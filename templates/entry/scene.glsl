@@ -8,9 +8,6 @@
 uniform {{ param.type }} {{ param.uniform }};  // {{ param.note }}
 {% endfor %}
 
-const float RADIUS = {{ radius }};  // the scene's own unit, and its own origin
-const vec3 CENTRE = {{ centre }};
-
 float steps = 0.0;        // passes of the loops
 float evaluations = 0.0;  // values of the whole scene that they took
 float unfinished = 0.0;   // 1 where a ray was given up at MOST_STEPS
@@ -31,6 +28,10 @@ void prepare() {
 {% endfor %}
 }
 
+{{ mark }}
+const float RADIUS = {{ radius }};  // the scene's own unit ...
+const vec3 CENTRE = {{ centre }};  // ... and its own origin
+
 {% include "lib/intervals.glsl" %}
 
 {% include "lib/tolerance.glsl" %}
@@ -48,7 +49,11 @@ void prepare() {
 
 {% endif %}
 {% include "lib/rebase.glsl" %}
+{% if surface %}
 
+{{ surface.structure }}
+{% endif %}
+{{ mark }}
 {{ functions }}
 {% if tables %}
 {{ tables }}
@@ -67,6 +72,5 @@ void prepare() {
 {% endif %}
 
 {% if surface %}
-{{ surface.structure }}
 {{ surface.function }}
 {% endif %}

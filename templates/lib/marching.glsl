@@ -21,6 +21,22 @@ float parabola(float t, float r, vec2 v, float bend, float eps) {
     return max(r, clear) <= eps ? t : t + max(r, clear) * 0.9999996;
 }
 
+// v: the value, and a radius within which nothing is nearer; `span`: what is known of it over the piece of the ray that
+// is `ahead` long, which is left as long as the next look should be. The solid is looked for a length `sunk` deeper. It
+// is there where no more than eps is clear of so short a piece: the slope near by counts, not the steepest.
+float piece(float t, inout float ahead, vec2 v, vec4 span, float lipschitz, float sunk, float eps) {
+    float depth = sunk * min(lipschitz, max(-span.z, span.w));
+    float above = v.x + depth, fall = max(-span.z, 1e-30);
+    bool empty = above > 0.0 && (span.x + depth > 0.0 || span.z >= 0.0);
+    float clear = max(empty ? ahead : min(ahead, max(above, 0.0) / fall), v.y + depth / lipschitz);
+    float root = span.w < 0.0 ? min(ahead, max(above, 0.0) / -span.w) : ahead;
+    bool there = above <= 0.0 || clear <= eps && root <= 4.0 * eps;
+    float shorter = span.w < 0.0 ? root - clear : max(2.0 * clear, 0.25 * ahead);
+    ahead = max(empty ? 2.0 * ahead : shorter, 4.0 * eps);
+    // where too long a piece says nothing, a shorter one is looked at from the very next number
+    return there ? t : t + max(clear * 0.9999996, 1.2e-7 * max(1.0, abs(t)));
+}
+
 // outside a convex function, from within: how far its tangent, or the end of its box, says to look ...
 float chord_reach(float t, vec2 v, float box_end, float eps) {
     float depth = 3.0 * eps - v.x;

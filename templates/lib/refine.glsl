@@ -1,3 +1,4 @@
+{# plain: whether it is regula falsi as published, without the two safeguards #}
 // A bracket of a root: `above` > 0 is the value at `outer`, `below` <= 0 that at `inner`. The value of an end that stays
 // is made to count for less (Anderson and Bjorck 1973), and where three looks did not halve the bracket, its middle is next.
 struct Bracket {

@@ -7,11 +7,17 @@ vec3 sky(vec3 d) { return sky_radiance(d, UP, {{ sky }}); }
 // Light number `light` at a point: the way to it, how far it is, and its irradiance there.
 void light_at(int light, vec3 p, out vec3 toward, out float reach, out vec3 irradiance) {
 {% for light in lights %}
+{% if loop.length == 1 %}
+{% for line in light.lines %}
+    {{ line }}
+{% endfor %}
+{% else %}
     {{ "" if loop.first else "else " }}{{ "" if loop.last else "if (light == %d) " % loop.index0 }}{
 {% for line in light.lines %}
         {{ line }}
 {% endfor %}
     }
+{% endif %}
 {% endfor %}
 }
 
@@ -89,5 +95,5 @@ vec4 radiance() {
     vec3 clear = transmit(normal, view, UP, {{ surface.properties.ior }}, {{ surface.properties.tint }}, {{ sky }});
     seen = mix(seen, clear, {{ surface.properties.transmission }});
 {% endif %}
-    return vec4(seen + {{ surface.properties.emission }}, 1.0);
+    return vec4(seen{{ "" if surface.properties.emission == "vec3(0.0)" else " + " ~ surface.properties.emission }}, 1.0);
 }

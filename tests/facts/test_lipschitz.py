@@ -134,7 +134,8 @@ def test_a_stretched_field_is_no_steeper() -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("field wild() = sqrt(abs(p.x)) + p.y bounds [-1, -1, -1] .. [1, 1, 1]", "over its box"),
+        ("field wild() = sqrt(abs(p.x)) + p.y bounds [-1, -1, -1] .. [1, 1, 1]", "over its box: `sqrt` is steep"),
+        ("field wild() = p.y - floor(3 * p.x) bounds [-1, -1, -1] .. [1, 1, 1]", "over its box: `floor` jumps"),
         ("field wild() = p.x * p.y - 1", "it has no bounds"),
     ],
 )
@@ -146,7 +147,8 @@ def test_where_there_is_no_bound_the_field_is_named(text: str, words: str) -> No
     with pytest.raises(SceneError, match=f"no bound of the slope of 'wild' could be found.*{words}") as caught:
         lipschitz(world).constant(shape, everything())
     assert caught.value.diagnostics[0].span is shape.span
-    assert "claim one" in str(caught.value.diagnostics[0].hint)
+    hint = str(caught.value.diagnostics[0].hint)
+    assert "claim one" in hint and ("& box" in hint) == ("no bounds" in words)  # no box where one stands
 
 
 def test_a_field_of_the_scenes_params_alone() -> None:

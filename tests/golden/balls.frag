@@ -20,9 +20,6 @@ void camera_ray(out vec3 o, out vec3 d) {
     cone = pixel.xy;
 }
 
-const float RADIUS = 1.1489125;  // the scene's own unit, and its own origin
-const vec3 CENTRE = vec3(0.0, 0.0, 0.0);
-
 float steps = 0.0;        // passes of the loops
 float evaluations = 0.0;  // values of the whole scene that they took
 float unfinished = 0.0;   // 1 where a ray was given up at MOST_STEPS
@@ -33,68 +30,23 @@ void prepare() {
 
 // Intervals of the ray's parameter: vec2(enter, leave), vec4 for two in order; an empty one leaves at -FAR.
 const float FAR = 1e9;
-const float GROW = 2.3841858e-7;  // solids are this much larger: parts that touch leave no crack
-const float CUT = 9.536743e-7;  // what is cut away is this much larger: faces that coincide leave no film
 
 // the first parameter at or after t inside the interval
 float enter(vec2 v, float t) { return t < v.y ? max(t, v.x) : FAR; }
+
 float enter(vec4 v, float t) { return min(enter(v.xy, t), enter(v.zw, t)); }
-
-// the first parameter at or after t outside it
-float leave(vec2 v, float t) { return t < v.x || t >= v.y ? t : v.y; }
-float leave(vec4 v, float t) { return leave(v.zw, leave(v.xy, t)); }
-
-// what is in both
-vec2 both(vec2 u, vec2 v) {
-    vec2 w = vec2(max(u.x, v.x), min(u.y, v.y));
-    return w.x < w.y ? w : vec2(FAR, -FAR);
-}
-
-// Convex solids in xy, their cores in zw. A run counts where all but one hold it by their cores: solids that only touch
-// share their skins, at any slant, but neither's core meets the other's skin.
-vec4 meeting(vec4 u, vec4 v) {
-    vec2 first = both(u.xy, v.zw), second = both(u.zw, v.xy);
-    return vec4(min(first.x, second.x), max(first.y, second.y), both(u.zw, v.zw));
-}
 
 // How near counts as there, at parameter t of the ray at hand. What converges fast is asked for all that float32 has;
 // the rest for a small part of a pixel.
 float rounding(float t) { return 1.9073486e-6 * max(1.0, abs(t)); }
+
 float tolerance(float t) { return max(rounding(t), 0.015625 * (cone.x + cone.y * (travelled + t))); }
 
 // Steps of what has no closed form: each answers with the next parameter that is worth a look, t itself for a hit.
 const int MOST_STEPS = 2048;  // all loops of a pixel together stay below 65 535, where llvmpipe stops them
 
-// v: the value of a convex function and its slope along the ray; its tangent cannot overshoot
-float tangent(float t, vec2 v, float eps) {
-    float fall = 2.4e-7 - v.y;
-    return v.x <= eps ? t : fall > 0.0 ? t + (v.x - 0.5 * eps) / fall * 0.9999996 : FAR;
-}
-
 // nothing is nearer than r
 float ball(float t, float r, float eps) { return r <= eps ? t : t + r * 0.9999996; }
-
-// nothing is nearer than r; v: what has the field's sign, and its slope along the ray, and bends down by no more than `bend`
-float parabola(float t, float r, vec2 v, float bend, float eps) {
-    float above = max(v.x, 0.0) * (1.0 - 0.5 * eps / max(r, eps));
-    float fall = 2.4e-7 + 1e-6 * abs(v.y) - v.y;
-    float root = sqrt(fall * fall + 2.0 * bend * above);
-    float clear = fall > 0.0 ? 2.0 * above / (fall + root) : (root - fall) / bend;
-    return r <= eps ? t : t + max(r, clear) * 0.9999996;
-}
-
-// outside a convex function, from within: how far its tangent, or the end of its box, says to look ...
-float chord_reach(float t, vec2 v, float box_end, float eps) {
-    float depth = 3.0 * eps - v.x;
-    return clamp(v.y > 1e-6 ? depth / v.y : FAR, 0.0, max(box_end - t, 0.0));
-}
-
-// ... and how far is clear: all of it where its end is still within, else up to the chord's root
-float chord(float t, float value, float reach, float value_there, float eps) {
-    float depth = 3.0 * eps - value, depth_there = 3.0 * eps - value_there;
-    float clear = depth_there > 0.0 ? reach : reach * depth / max(depth - depth_there, 1e-30);
-    return depth <= eps ? t : t + max(clear, 0.5 * eps) * 0.9999996;
-}
 
 // a part that matters only inside a box
 float inside(vec2 box, float t, float next) { return t < box.x ? box.x : next < box.y ? next : FAR; }
@@ -114,6 +66,18 @@ float rebase(inout vec3 o, vec3 d) {
     vec3 head = intBitsToFloat(floatBitsToInt(d) & 0xFFFFF000);
     o = (o + t * head) + t * (d - head);
     return t;
+}
+
+struct Surface {
+    vec4 field;  // gradient and value
+    float rank;  // the value of what is traced, a little way back
+    float material;
+};
+
+Surface farther(Surface a, Surface b) { if (b.rank > a.rank) return b; return a; }
+
+Surface unpainted_material(vec4 field, float rank) {
+    return Surface(field, rank, 0.0);
 }
 
 // A ring around y: `major` is the ring's radius, `minor` its tube's.
@@ -196,7 +160,8 @@ float march(vec3 o, vec3 d, float start, float limit) {
         t = next;
         vec3 p = o + t * d;
         float eps = tolerance(t), fine = rounding(t);
-        next = max(inside(bounds_1, t, ball(t, 3.0 * fine + torus(p, 0.52223295, 0.17407766), fine)), ball(t, 3.0 * fine - 0.87038827 * twist_1_field(p * 1.1489125), fine));
+        float sunk = 3.0 * rounding(max(t, 0.0));
+        next = max(inside(bounds_1, t, ball(t, sunk + torus(p, 0.52223295, 0.17407766), fine)), ball(t, 3.0 * fine - 0.87038827 * twist_1_field(p * 1.1489125), fine));
         steps += 1.0;
         evaluations += 1.0;
         count += 1;
@@ -212,19 +177,6 @@ float trace(vec3 o, vec3 d, float start, float limit) {
     float first = FAR;
     first = min(first, march(o, d, start, min(first, limit)));
     return first < limit ? first : FAR;
-}
-
-struct Surface {
-    vec4 field;  // gradient and value
-    float rank;  // the value of what is traced, a little way back
-    float material;
-};
-
-Surface nearer(Surface a, Surface b) { if (b.rank < a.rank) return b; return a; }
-Surface farther(Surface a, Surface b) { if (b.rank > a.rank) return b; return a; }
-
-Surface unpainted_material(vec4 field, float rank) {
-    return Surface(field, rank, 0.0);
 }
 
 Surface surface(vec3 p, vec3 d, float fine) {
@@ -255,46 +207,53 @@ float sun_disc(vec3 direction, vec3 toward) {
 // BRDF times n·l (VEC3). Unit vectors: normal, view (to the eye), light (to the light).
 vec3 reflect_light(vec3 normal, vec3 view, vec3 light, vec3 color, float metallic, float roughness) {
     vec3 q = view + light;
-    vec3 q_2 = q / sqrt(max(dot(q, q), 1e-12));
-    float d = normal.y * q_2.z - normal.z * q_2.y;
-    vec3 q_3 = vec3(d, normal.z * q_2.x - normal.x * q_2.z, normal.x * q_2.y - normal.y * q_2.x);
-    float d_2 = clamp(roughness, 0.09, 1.0);
-    float product = d_2 * d_2;
-    float product_2 = clamp(dot(normal, q_2), 0.0, 1.0) * product;
-    float ratio = product / (dot(q_3, q_3) + product_2 * product_2 + 1e-12);
-    float product_3 = product * product;
-    float d_3 = 1.0 - product_3;
-    float d_4 = clamp(dot(normal, light), 0.0, 1.0);
-    float d_5 = clamp(dot(normal, view), 0.0001, 1.0);
-    float sum = d_5 * sqrt(d_4 * d_4 * d_3 + product_3) + d_4 * sqrt(d_5 * d_5 * d_3 + product_3);
-    float d_6 = clamp(1.0 - dot(view, q_2), 0.0, 1.0);
-    float product_4 = d_6 * d_6;
-    vec3 q_4 = clamp(color, 0.0, 1.0);
-    float d_7 = clamp(metallic, 0.0, 1.0);
-    vec3 q_5 = vec3(0.04) + (q_4 - vec3(0.04)) * d_7;
-    vec3 q_6 = q_5 + (vec3(1.0) - q_5) * (product_4 * product_4 * d_6);
-    float product_5 = (((56.543 * d_4 - 123.158) * d_4 + 76.425) * d_4 - 12.016) * d_2;
-    float product_6 = (product_5 + (((-122.696 * d_4 + 273.082) * d_4 - 176.513) * d_4 + 29.036)) * d_2;
-    float product_7 = (product_6 + (((82.835 * d_4 - 190.177) * d_4 + 130.466) * d_4 - 22.976)) * d_2;
-    float product_8 = product * (product_7 + (((-15.85 * d_4 + 38.325) * d_4 - 28.663) * d_4 + 6.033));
-    float d_8 = clamp(product_8, 0.0, 1.0);
-    float sum_2 = 2.6 + 2.4 / (1.0 + 125.0 * d_2 * product);
-    float sum_3 = 1.0 + product * (7.0 + 15.0 * d_2);
-    float sum_4 = 0.04 * (1.0 - d_8) + 0.96 * (pow(max(clamp(1.0 - d_4, 0.0, 1.0), 1e-7), sum_2) / sum_3);
-    float product_9 = (((56.543 * d_5 - 123.158) * d_5 + 76.425) * d_5 - 12.016) * d_2;
-    float product_10 = (product_9 + (((-122.696 * d_5 + 273.082) * d_5 - 176.513) * d_5 + 29.036)) * d_2;
-    float product_11 = (product_10 + (((82.835 * d_5 - 190.177) * d_5 + 130.466) * d_5 - 22.976)) * d_2;
-    float product_12 = product * (product_11 + (((-15.85 * d_5 + 38.325) * d_5 - 28.663) * d_5 + 6.033));
-    float d_9 = clamp(product_12, 0.0, 1.0);
-    float sum_5 = 0.04 * (1.0 - d_9) + 0.96 * (pow(max(clamp(1.0 - d_5, 0.0, 1.0), 1e-7), sum_2) / sum_3);
-    float product_13 = 3.1415927 * (1.0 - (((0.1146 * d_2 - 0.1774) * d_2 - 0.002) * d_2 + 0.0848));
-    vec3 q_7 = q_4 * (1.0 - d_7) * ((1.0 - sum_4) * (1.0 - sum_5) / product_13);
-    vec3 q_8 = q_5 * 0.95238096 + 0.04761905;
-    float sum_6 = (((4.3982 * d_2 - 11.227) * d_2 + 8.9283) * d_2 - 1.7301) * d_2 + 0.232;
-    float product_14 = product * sum_6;
-    vec3 q_9 = q_8 * q_8 * (1.0 - product_14) / (1.0 - q_8 * product_14);
-    vec3 q_10 = q_7 + q_6 * (ratio * ratio * 0.15915494 / sum);
-    return (q_10 + q_9 * (d_8 * d_9 / (3.1415927 * product_14))) * d_4;
+    vec3 halfway = q / sqrt(max(dot(q, q), 1e-12));
+    float d = normal.y * halfway.z - normal.z * halfway.y;
+    float d_2 = normal.z * halfway.x - normal.x * halfway.z;
+    vec3 across = vec3(d, d_2, normal.x * halfway.y - normal.y * halfway.x);
+    float rough = clamp(roughness, 0.09, 1.0);
+    float alpha = rough * rough;
+    float product = clamp(dot(normal, halfway), 0.0, 1.0) * alpha;
+    float spread = alpha / (dot(across, across) + product * product + 1e-12);
+    float product_2 = alpha * alpha;
+    float d_3 = 1.0 - product_2;
+    float n_dot_l = clamp(dot(normal, light), 0.0, 1.0);
+    float n_dot_v = clamp(dot(normal, view), 0.0001, 1.0);
+    float smith_light = n_dot_v * sqrt(n_dot_l * n_dot_l * d_3 + product_2);
+    float smith_view = n_dot_l * sqrt(n_dot_v * n_dot_v * d_3 + product_2);
+    float d_4 = clamp(1.0 - dot(view, halfway), 0.0, 1.0);
+    float product_3 = d_4 * d_4;
+    float fresnel = product_3 * product_3 * d_4;
+    vec3 q_2 = clamp(color, 0.0, 1.0);
+    float d_5 = clamp(metallic, 0.0, 1.0);
+    vec3 head_on = vec3(0.04) + (q_2 - vec3(0.04)) * d_5;
+    vec3 facets = head_on + (vec3(1.0) - head_on) * fresnel;
+    vec3 one_bounce = facets * (spread * spread * 0.15915494 / (smith_light + smith_view));
+    float product_4 = (((56.543 * n_dot_l - 123.158) * n_dot_l + 76.425) * n_dot_l - 12.016) * rough;
+    float sum = product_4 + (((-122.696 * n_dot_l + 273.082) * n_dot_l - 176.513) * n_dot_l + 29.036);
+    float sum_2 = sum * rough + (((82.835 * n_dot_l - 190.177) * n_dot_l + 130.466) * n_dot_l - 22.976);
+    float sum_3 = sum_2 * rough + (((-15.85 * n_dot_l + 38.325) * n_dot_l - 28.663) * n_dot_l + 6.033);
+    float lost_light = clamp(alpha * sum_3, 0.0, 1.0);
+    float sum_4 = 2.6 + 2.4 / (1.0 + 125.0 * rough * alpha);
+    float sum_5 = 1.0 + alpha * (7.0 + 15.0 * rough);
+    float product_5 = 0.96 * (pow(max(clamp(1.0 - n_dot_l, 0.0, 1.0), 1e-7), sum_4) / sum_5);
+    float albedo_light = 0.04 * (1.0 - lost_light) + product_5;
+    float product_6 = (((56.543 * n_dot_v - 123.158) * n_dot_v + 76.425) * n_dot_v - 12.016) * rough;
+    float sum_6 = product_6 + (((-122.696 * n_dot_v + 273.082) * n_dot_v - 176.513) * n_dot_v + 29.036);
+    float sum_7 = sum_6 * rough + (((82.835 * n_dot_v - 190.177) * n_dot_v + 130.466) * n_dot_v - 22.976);
+    float sum_8 = sum_7 * rough + (((-15.85 * n_dot_v + 38.325) * n_dot_v - 28.663) * n_dot_v + 6.033);
+    float lost_view = clamp(alpha * sum_8, 0.0, 1.0);
+    float product_7 = 0.96 * (pow(max(clamp(1.0 - n_dot_v, 0.0, 1.0), 1e-7), sum_4) / sum_5);
+    float albedo_view = 0.04 * (1.0 - lost_view) + product_7;
+    float product_8 = 3.1415927 * (1.0 - (((0.1146 * rough - 0.1774) * rough - 0.002) * rough + 0.0848));
+    vec3 unabsorbed = q_2 * (1.0 - d_5);
+    vec3 diffuse = unabsorbed * ((1.0 - albedo_light) * (1.0 - albedo_view) / product_8);
+    vec3 q_3 = head_on * 0.95238096 + 0.04761905;
+    float sum_9 = (((4.3982 * rough - 11.227) * rough + 8.9283) * rough - 1.7301) * rough + 0.232;
+    float lost_mean = alpha * sum_9;
+    vec3 q_4 = q_3 * q_3 * (1.0 - lost_mean) / (1.0 - q_3 * lost_mean);
+    vec3 more_bounces = q_4 * (lost_light * lost_view / (3.1415927 * lost_mean));
+    return (diffuse + one_bounce + more_bounces) * n_dot_l;
 }
 
 // Ambient occlusion (1 is open) from distances at heights over the surface, lowest first, same unit.
@@ -306,41 +265,46 @@ float occlusion_weight(vec4 distances, vec4 heights) {
 
 // Radiance (VEC3) from the sky; `occlusion` is 1 in the open and 0 where no sky is seen.
 vec3 ambient(vec3 normal, vec3 view, vec3 up, vec3 color, float metallic, float roughness, float occlusion, vec3 zenith, vec3 horizon, vec3 ground) {
-    float d = clamp(roughness, 0.09, 1.0);
-    float product = d * d;
+    float rough = clamp(roughness, 0.09, 1.0);
+    float product = rough * rough;
     float product_2 = 0.35 * product;
     float product_3 = clamp(dot(normal * (2.0 * dot(view, normal)) - view, up), -1.0, 1.0) * (1.0 - product_2);
     float sum = 0.01 + 0.4 * product;
-    float d_2 = min(0.5 * (product_3 + sqrt(product_3 * product_3 + sum * sum)), 1.0);
-    vec3 q = horizon + (zenith - horizon) * (d_2 * 1.17 / (d_2 + 0.17));
+    float d = min(0.5 * (product_3 + sqrt(product_3 * product_3 + sum * sum)), 1.0);
+    vec3 q = horizon + (zenith - horizon) * (d * 1.17 / (d + 0.17));
     float ratio = (product_3 + 0.34 * (1.0 - product)) / (0.15 + product_2);
-    float d_3 = clamp(dot(normal, view), 0.0001, 1.0);
-    float product_4 = (((56.543 * d_3 - 123.158) * d_3 + 76.425) * d_3 - 12.016) * d;
-    float product_5 = (product_4 + (((-122.696 * d_3 + 273.082) * d_3 - 176.513) * d_3 + 29.036)) * d;
-    float product_6 = (product_5 + (((82.835 * d_3 - 190.177) * d_3 + 130.466) * d_3 - 22.976)) * d;
-    float product_7 = product * (product_6 + (((-15.85 * d_3 + 38.325) * d_3 - 28.663) * d_3 + 6.033));
-    float d_4 = clamp(product_7, 0.0, 1.0);
-    float d_5 = 1.0 - d_4;
-    float power = pow(max(clamp(1.0 - d_3, 0.0, 1.0), 1e-7), 2.6 + 2.4 / (1.0 + 125.0 * d * product));
-    float ratio_2 = power / (1.0 + product * (7.0 + 15.0 * d));
+    vec3 sky_mirrored = q + (ground - q) * (0.5 - 0.5 * ratio / sqrt(1.0 + ratio * ratio));
+    float n_dot_v = clamp(dot(normal, view), 0.0001, 1.0);
+    float product_4 = (((56.543 * n_dot_v - 123.158) * n_dot_v + 76.425) * n_dot_v - 12.016) * rough;
+    float sum_2 = product_4 + (((-122.696 * n_dot_v + 273.082) * n_dot_v - 176.513) * n_dot_v + 29.036);
+    float sum_3 = sum_2 * rough + (((82.835 * n_dot_v - 190.177) * n_dot_v + 130.466) * n_dot_v - 22.976);
+    float sum_4 = sum_3 * rough + (((-15.85 * n_dot_v + 38.325) * n_dot_v - 28.663) * n_dot_v + 6.033);
+    float d_2 = clamp(product * sum_4, 0.0, 1.0);
+    float d_3 = 1.0 - d_2;
+    float sum_5 = 2.6 + 2.4 / (1.0 + 125.0 * rough * product);
+    float power = pow(max(clamp(1.0 - n_dot_v, 0.0, 1.0), 1e-7), sum_5);
+    float ratio_2 = power / (1.0 + product * (7.0 + 15.0 * rough));
     vec3 q_2 = clamp(color, 0.0, 1.0);
-    float d_6 = clamp(metallic, 0.0, 1.0);
-    vec3 q_3 = vec3(0.04) + (q_2 - vec3(0.04)) * d_6;
-    vec3 q_4 = q_3 * 0.95238096 + 0.04761905;
-    float sum_2 = (((4.3982 * d - 11.227) * d + 8.9283) * d - 1.7301) * d + 0.232;
-    float product_8 = product * sum_2;
-    vec3 q_5 = q_4 * q_4 * (1.0 - product_8) / (1.0 - q_4 * product_8) * d_4;
-    vec3 q_6 = q + (ground - q) * (0.5 - 0.5 * ratio / sqrt(1.0 + ratio * ratio));
-    float d_7 = clamp(occlusion, 0.0, 1.0);
-    float d_8 = clamp(pow(max(d_3 + d_7, 1e-7), exp(-11.09 * d - 0.693)) - 1.0 + d_7, 0.0, 1.0);
-    vec3 q_7 = q_2 * (1.0 - d_6);
-    float d_9 = clamp(dot(normal, up), -1.0, 1.0);
-    float sum_3 = ((0.0315 * d_9 * d_9 + 0.0461) * d_9 + 0.4485) * d_9 + 0.3687;
-    float sum_4 = ((0.0512 * d_9 * d_9 + 0.0794) * d_9 - 0.4207) * d_9 + 0.2954;
-    vec3 q_8 = zenith * sum_3 + ground * sum_4 + horizon * (1.0 - sum_3 - sum_4);
-    vec3 q_9 = ((2.0404 * q_7 - 0.3324) * d_7 + (-4.7951 * q_7 + 0.6417)) * d_7 + (2.7552 * q_7 + 0.6903);
-    vec3 q_10 = q_7 * (1.0 - (0.04 * d_5 + 0.96 * ratio_2)) * q_8 * max(vec3(1.0) * d_7, q_9 * d_7);
-    return q_10 + (q_3 * max(d_5 - ratio_2, 0.0) + ratio_2 + q_5) * q_6 * d_8;
+    float d_4 = clamp(metallic, 0.0, 1.0);
+    vec3 head_on = vec3(0.04) + (q_2 - vec3(0.04)) * d_4;
+    vec3 q_3 = head_on * 0.95238096 + 0.04761905;
+    float sum_6 = (((4.3982 * rough - 11.227) * rough + 8.9283) * rough - 1.7301) * rough + 0.232;
+    float product_5 = product * sum_6;
+    vec3 q_4 = q_3 * q_3 * (1.0 - product_5) / (1.0 - q_3 * product_5) * d_2;
+    vec3 reflectance = head_on * max(d_3 - ratio_2, 0.0) + ratio_2 + q_4;
+    float d_5 = clamp(occlusion, 0.0, 1.0);
+    float unhidden = clamp(pow(max(n_dot_v + d_5, 1e-7), exp(-11.09 * rough - 0.693)) - 1.0 + d_5, 0.0, 1.0);
+    vec3 specular = reflectance * sky_mirrored * unhidden;
+    float albedo = 0.04 * d_3 + 0.96 * ratio_2;
+    vec3 unabsorbed = q_2 * (1.0 - d_4);
+    float d_6 = clamp(dot(normal, up), -1.0, 1.0);
+    float sum_7 = ((0.0315 * d_6 * d_6 + 0.0461) * d_6 + 0.4485) * d_6 + 0.3687;
+    float sum_8 = ((0.0512 * d_6 * d_6 + 0.0794) * d_6 - 0.4207) * d_6 + 0.2954;
+    vec3 sky_around = zenith * sum_7 + ground * sum_8 + horizon * (1.0 - sum_7 - sum_8);
+    vec3 q_5 = ((2.0404 * unabsorbed - 0.3324) * d_5 + (-4.7951 * unabsorbed + 0.6417)) * d_5;
+    vec3 bounced = max(vec3(1.0) * d_5, (q_5 + (2.7552 * unabsorbed + 0.6903)) * d_5);
+    vec3 diffuse = unabsorbed * (1.0 - albedo) * sky_around * bounced;
+    return diffuse + specular;
 }
 
 // Linear radiance to linear 0 .. 1 (AgX).
@@ -376,11 +340,9 @@ vec3 sky(vec3 d) { return sky_radiance(d, UP, vec3(0.21, 0.32, 0.52), vec3(0.86,
 
 // Light number `light` at a point: the way to it, how far it is, and its irradiance there.
 void light_at(int light, vec3 p, out vec3 toward, out float reach, out vec3 irradiance) {
-    {
-        toward = vec3(-0.12290758, 0.6691306, 0.73291063);
-        reach = FAR;
-        irradiance = vec3(4.4, 3.916, 3.256);
-    }
+    toward = vec3(-0.12290758, 0.6691306, 0.73291063);
+    reach = FAR;
+    irradiance = vec3(4.4, 3.916, 3.256);
 }
 
 // How open the sky is over a point, from distances along the normal.
@@ -421,7 +383,7 @@ vec4 radiance() {
             p = o + t * d;
             s = surface(hit ? p : vec3(0.0), d, rounding(hit ? t : 0.0));
             // at a point without a gradient (a cone's tip, a medial axis) the surface faces the eye
-            s.field.xyz = dot(s.field.xyz, s.field.xyz) > 1e-12 ? s.field.xyz : -d;
+            s.field.xyz = dot(s.field.xyz, s.field.xyz) > 1e-28 ? s.field.xyz : -d;
             // one Newton step to the surface itself, off the skin that closes cracks and off the tolerance of marching
             float steepness = length(s.field.xyz), slope = dot(s.field.xyz, d);
             float most = 4.0 * tolerance(t) / clamp(steepness, 0.05, 1.0);
@@ -445,7 +407,7 @@ vec4 radiance() {
         return vec4(sky(-view) + sun_disc(-view, vec3(-0.12290758, 0.6691306, 0.73291063)) * (vec3(4.4, 3.916, 3.256)), 0.0);
     }
     seen += ambient(normal, view, UP, vec3(0.48), 0.0, 0.5, openness(p, normal), vec3(0.21, 0.32, 0.52), vec3(0.86, 0.88, 0.91), vec3(0.23, 0.225, 0.22));
-    return vec4(seen + vec3(0.0), 1.0);
+    return vec4(seen, 1.0);
 }
 
 layout(location = 0) out vec4 color_out;  // sRGB

@@ -146,8 +146,8 @@ def test_an_operation_on_solids_also_takes_shapes_in_the_plane_where_its_formula
 
 
 def test_functions_make_shapes_and_are_chained() -> None:
-    made = scene("def ring(n, r = 1) = union(for i in 0..n: sphere(0.1).translate(x: r).rotate(y: i * 360deg / n))\n"
-                 "def lifted(shape, h) = shape.translate(y: h)\nscene { ring(5).lifted(2) }")  # fmt: skip
+    made = scene("def wreath(n, r = 1) = union(for i in 0..n: sphere(0.1).translate(x: r).rotate(y: i * 360deg / n))\n"
+                 "def lifted(shape, h) = shape.translate(y: h)\nscene { wreath(5).lifted(2) }")  # fmt: skip
     assert len(the(Union, the(Affine, made.root).child).children) == 5
     assert not made.warnings
 

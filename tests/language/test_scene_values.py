@@ -139,6 +139,13 @@ def test_what_is_never_used_is_a_warning() -> None:
     assert {w.severity for w in made.warnings} == {"warning"}
 
 
+def test_a_function_that_hides_a_shape_of_the_library_is_a_warning() -> None:
+    made = scene("def box(a) = sphere(a)\nfield torus() = length(p) - 1\nscene { box(1) torus() }")
+    (warning,) = made.warnings
+    assert warning.message == "'box' is also a shape or an operation of the library, which this hides"
+    assert warning.hint == "give it another name" and warning.severity == "warning"
+
+
 def test_a_texture_is_a_warning_and_its_first_colour() -> None:
     made = scene("material m { color: checker(#fff, #000, scale: 2) }\nscene { box().material(m) }")
     assert made.root.material.color.numbers == (1.0, 1.0, 1.0)  # type: ignore[union-attr]

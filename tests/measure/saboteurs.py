@@ -115,7 +115,9 @@ SABOTEURS = {
         ("tangent/sphere*1e-5", "edge/box from (0.0, 0.0, 1.0)*", "twist/twisted bar, 1440*", "repeat/without end"),
     ),
     "inside out": Saboteur(
-        "does not know that it starts inside", _sphere(radius="abs(map(p))"), ("start/within sphere*", "start/within box*")
+        "does not know that it starts inside",
+        _sphere(radius="abs(map(p))"),
+        ("start/within sphere*", "start/within box*"),
     ),
     "relative": Saboteur(
         "error is the radius over the distance travelled, 0/0 where the ray starts on a surface",

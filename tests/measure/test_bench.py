@@ -14,7 +14,7 @@ import pytest
 from sdfc import pipeline
 from sdfc.api.renderer import GlRenderer
 from sdfc.api.request import RequestError
-from sdfc.diagnostics import DeviceError, Source, scene_error
+from sdfc.diagnostics import DeviceError, InternalError, Source, scene_error
 from sdfc.measure.bench import entrants, tables
 from sdfc.measure.bench.answers import RayDrawing
 from sdfc.measure.bench.judged import court
@@ -23,6 +23,8 @@ from sdfc.measure.bench.record import Cell, Record
 from sdfc.measure.bench.report import report
 from sdfc.measure.bench.run import bench, opened
 from sdfc.measure.bench.store import RESULTS, Store, read
+from sdfc.pipeline import Options
+from sdfc.scene.model import Scene
 
 pytestmark = pytest.mark.gpu
 
@@ -202,10 +204,10 @@ def test_a_colour_is_judged_by_its_alpha(wanted: Wanted, measure: Measure, tmp_p
 def test_a_tracer_that_is_not_legal_says_so(wanted: Wanted, measure: Measure, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = entrants.asked
 
-    def refused(scene: object, spec: str, renderer: GlRenderer) -> object:
+    def refused(scene: Scene, spec: str, renderer: GlRenderer) -> tuple[Options, str]:
         if spec == "sphere":
             raise scene_error("no Lipschitz constant")
-        return asked(scene, spec, renderer)  # type: ignore[arg-type]
+        return asked(scene, spec, renderer)
 
     monkeypatch.setattr(entrants, "asked", refused)
     found = measure(replace(wanted, scenes=wanted.scenes[:1]))
@@ -214,6 +216,22 @@ def test_a_tracer_that_is_not_legal_says_so(wanted: Wanted, measure: Measure, mo
     proven = found.records[Cell("ball.sdf", "proven", "64x36")]
     assert proven.wrong == 0 and proven.timing is not None and np.isnan(proven.timing.reference)
     assert "illegal: no Lipschitz constant" in tables.page(found)
+
+
+def test_a_bug_on_one_scene_does_not_cost_the_others(
+    wanted: Wanted, measure: Measure, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = entrants.asked
+
+    def broken(scene: Scene, spec: str, renderer: GlRenderer) -> tuple[Options, str]:
+        if "ball" in scene.source.name:
+            raise InternalError("two proofs disagree")
+        return asked(scene, spec, renderer)
+
+    monkeypatch.setattr(entrants, "asked", broken)
+    found = measure(wanted)
+    assert [text.split(": ") for text in found.failures] == [["ball.sdf", "two proofs disagree"]]
+    assert {c.scene for c in found.records} == {"blob.sdf"}
 
 
 def test_sweeps_and_additions_are_cells_of_their_own(wanted: Wanted, measure: Measure) -> None:
@@ -225,6 +243,15 @@ def test_sweeps_and_additions_are_cells_of_their_own(wanted: Wanted, measure: Me
     assert found[Cell("blob.sdf", "auto", "64x36", 8.0)].note != ""
     with pytest.raises(RequestError, match="no addition to a tracer 'prepas'"):
         entrants.checked(("sphere+prepas",))
+
+
+def test_budgets_and_sweeps_may_be_smaller(wanted: Wanted, measure: Measure) -> None:
+    halved = replace(wanted, aside=2, sweeps=(Sweep(("sphere", "relaxed"), 64.0),), swept=("ball.sdf",))
+    found = measure(halved).records
+    assert len(found) == halved.cells
+    aside = {c for c in found if c.size == "32x18"}
+    assert aside == {c for c in found if c.budget is not None or c.tolerance == 64.0} and len(aside) == 4
+    assert {c.size for c in found} == {"64x36", "32x18"}
 
 
 def test_results_survive_the_file(wanted: Wanted, measure: Measure, tmp_path: Path) -> None:

@@ -108,11 +108,11 @@ def test_what_is_in_the_plane_is_shown_one_thick() -> None:
 
 
 def test_mixing_dimensions_leaves_out_what_is_not_as_the_first() -> None:
-    text = f"union() {{ {UNIT} square(size = [9, 9]); }}"
+    text = f"union() {{ {UNIT} %sphere(r = 9); group() {{ square(size = [9, 9]); }} }}"
     assert inside(text, (0, 0, 0), (5, 5, 0)) == [True, False]
     (warning,) = scene(text).warnings
-    assert "in the plane is left out" in warning.message
-    assert warning.span is not None
+    assert warning.message == "`square` is in the plane and left out: what stands first is in space"
+    assert warning.span is not None and text[warning.span.start : warning.span.end] == "square"
 
 
 def test_a_map_of_a_map_is_one_and_the_last_row_is_ignored() -> None:

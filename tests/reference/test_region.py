@@ -71,7 +71,7 @@ def found(field: Field, level: float = 0.01, end: float = 6.0) -> tuple[Region |
         (jumping, 1e9, 1.4),
         (turned_box, 6.0, 1.7),
         (turned_box, 1e9, 1.7),
-        (twisted, 6.0, 2.0),
+        (twisted, 6.0, 4.0),
     ],
 )
 def test_outside_the_region_the_function_is_above_the_level(field: Field, end: float, slack: float) -> None:

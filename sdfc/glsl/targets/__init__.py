@@ -14,7 +14,7 @@ def _table() -> MappingProxyType[str, Target]:
     for module in sorted(m.name for m in pkgutil.iter_modules(__path__)):
         entry = getattr(importlib.import_module(f"{__name__}.{module}"), "ENTRY", None)
         if entry is not None:  # what several targets share has none
-            assert isinstance(entry, Target) and entry.name == module, f"{module} must define the Target of its own name"
+            assert isinstance(entry, Target) and entry.name == module, f"{module} must be the Target of its own name"
             rows[entry.name] = entry
     return MappingProxyType(rows)
 

@@ -10,6 +10,7 @@ ENTRY = Target(
     full=FRAGMENT,
     suffix=SUFFIXES,
     pixel=PIXEL,
+    is_told=True,
     version="300 es",
     precision=True,
 )

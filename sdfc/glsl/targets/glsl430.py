@@ -10,5 +10,6 @@ ENTRY = Target(
     full=BOTH,
     suffix=SUFFIXES,
     pixel=PIXEL,
+    is_told=True,
     version="430 core",
 )

@@ -85,9 +85,12 @@ class Target:
     full_part: Part = "full"  # what its complete shader is made around
     is_baked: bool = False  # whether it has no uniforms of one's own
     is_prefixed: bool = False  # whether the names of a complete shader need a prefix too
+    is_description: bool = False  # whether it tells of all other targets
+    is_told: bool = False  # whether such a description holds its texts
+    hands_state: bool = False  # whether functions that remember take a `State` first
     is_pair: bool = False  # whether its stages belong together
     lower: Callable[[list[Item], Brief], list[Item]] = as_is  # the items of a shader become the dialect's
-    page: Mapping[Part, str] = field(default_factory=dict)  # the template of the file around the text, where there is one
+    page: Mapping[Part, str] = field(default_factory=dict)  # the template of the file around the text
 
     @property
     def stages(self) -> tuple[str, ...]:

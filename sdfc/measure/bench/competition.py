@@ -15,7 +15,7 @@ from sdfc.api.renderer import GlRenderer
 from sdfc.api.request import View
 from sdfc.measure.bench import contest
 from sdfc.measure.bench.answers import Answers, Array, RayDrawing, Size, covered
-from sdfc.measure.bench.entrants import Drawing, Entrant, Floor, Illegal, Reply, Traced, entrant, timed
+from sdfc.measure.bench.entrants import Drawing, Entrant, Floor, Illegal, Reply, Traced, entrant
 from sdfc.measure.bench.foreign import Foreign, foreign
 from sdfc.measure.bench.judged import Court, court
 from sdfc.measure.bench.machine import now
@@ -42,7 +42,7 @@ class Competition:
     renderer: GlRenderer
     kept: Store
     _competitors: dict[tuple[str, int | None], Legal | Illegal] = field(default_factory=dict)
-    _firsts: dict[str, contest.FirstDraw] = field(default_factory=dict)
+    _starts: dict[str, contest.Start] = field(default_factory=dict)
     _courts: dict[str, Court] = field(default_factory=dict)
     _base: Compiled | None = None
 
@@ -100,38 +100,39 @@ class Competition:
         finished(cell, None if there else made)
 
     def _measure(self, group: Group, due: Mapping[str, Legal], finished: Finished) -> None:
-        """Time them in turn, the reference among them, then judge each."""
+        """Time them in turn, the reference among them, then judge each. Those of one shader are drawn once for all."""
+        reference = self._reference(group)
         with ExitStack() as stack:
             drawings: dict[str, Drawing] = {}
-            for name in dict.fromkeys((group.reference, *due)):
-                match self.competitor(name, group.budget):
-                    case Illegal():
-                        continue
-                    case legal:
-                        drawings[name] = self._first(stack, legal, group)
+            for legal in (*reference, *due.values()):
+                if legal.text not in self._starts:
+                    self._starts[legal.text] = contest.started(legal)
+                if legal.text not in drawings:
+                    drawings[legal.text] = stack.enter_context(legal.drawing(self.size, group.tolerance))
             taken = contest.frame_times(drawings, self.wanted.repeat)
+            beside = taken[reference[0].text] if reference else ()
             for name, legal in due.items():
-                answers, first = self._answers(legal, drawings[name]), self._firsts[legal.text]
-                timing = contest.timing(taken[name], taken.get(group.reference, ()))
+                answers = self._answers(legal, drawings[legal.text])
                 record = Record(
                     group.cell(name),
                     self._key(group, legal.text),
                     now(),
                     self.kept.machine["commit"],
                     legal.note,
-                    timing=timing,
-                    building=contest.building(legal.costs, first, timing.median, len(legal.text)),
+                    timing=contest.timing(taken[legal.text], beside),
+                    building=contest.building(legal, self._starts[legal.text]),
                     work=contest.work(answers) if answers is not None and legal.reply is Reply.DEPTH else None,
                     errors={} if answers is None else self._errors(legal, group, answers),
                 )
                 finished(record.cell, record)
 
-    def _first(self, stack: ExitStack, legal: Entrant, group: Group) -> Drawing:
-        """A drawing whose program is compiled; what its first frame took is noted, whoever shares the program."""
-        drawing, front_end = timed(lambda: stack.enter_context(legal.drawing(self.size, group.tolerance)))
-        if legal.text not in self._firsts:
-            self._firsts[legal.text] = contest.FirstDraw(front_end, timed(drawing.draw)[1])
-        return drawing
+    def _reference(self, group: Group) -> tuple[Legal, ...]:
+        """What all of the group are timed beside, where it is legal."""
+        match self.competitor(group.reference, group.budget):
+            case Illegal():
+                return ()
+            case legal:
+                return (legal,)
 
     def _answers(self, legal: Entrant, drawing: Drawing) -> Answers | None:
         """What the last frame says, if it says anything."""

@@ -2,36 +2,46 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 
 import numpy as np
 
 from sdfc.measure.bench.answers import Answers
-from sdfc.measure.bench.entrants import Drawing, timed
+from sdfc.measure.bench.entrants import Drawing, Entrant, timed
 from sdfc.measure.bench.record import Building, Timing, Work
 
-PATIENCE = 8.0  # seconds of rounds; then no more are begun
+PATIENCE = 1.5  # seconds of frames of one competitor; then no more are drawn
+TINY = (16, 9)
 
 
 @dataclass(frozen=True, slots=True)
-class FirstDraw:
-    """Milliseconds that a program took until it could be drawn, and to be drawn for the first time."""
+class Start:
+    """Milliseconds until a program could be drawn, and for its machine code."""
 
     front_end: float
-    draw: float
+    machine_code: float
+
+
+def started(entrant: Entrant) -> Start:
+    """Draws a tiny frame twice: the first is compiled for, the second is not."""
+    with ExitStack() as stack:
+        drawing, front_end = timed(lambda: stack.enter_context(entrant.drawing(TINY, 1.0)))
+        first, second = timed(drawing.draw)[1], timed(drawing.draw)[1]
+    return Start(front_end, max(0.0, first - second))
 
 
 def frame_times(drawings: Mapping[str, Drawing], most: int, patience: float = PATIENCE) -> dict[str, list[float]]:
-    """Milliseconds of every frame of each. `most` rounds, or fewer (one at least) that take `patience` (seconds)."""
+    """Milliseconds of every frame of each, one of each in turn.
+
+    `most` frames of each, or fewer (one at least) where they have taken more than `patience` (seconds).
+    """
     taken: dict[str, list[float]] = {name: [] for name in drawings}
-    started = time.perf_counter()
-    for done in range(most):
-        if done and time.perf_counter() - started > patience:
-            break
+    for _ in range(most):
         for name, drawing in drawings.items():
-            taken[name].append(timed(drawing.draw)[1])
+            if sum(taken[name]) <= 1e3 * patience:
+                taken[name].append(timed(drawing.draw)[1])
     return taken
 
 
@@ -42,10 +52,10 @@ def timing(taken: Sequence[float], reference: Sequence[float]) -> Timing:
     return Timing(float(median), float(low), float(high), len(taken), beside)
 
 
-def building(costs: Mapping[str, float], first: FirstDraw, frame: float, length: int) -> Building:
-    """What came before the first picture; milliseconds, all but `length`. `frame`: what later frames took."""
-    slower = max(0.0, first.draw - frame)
-    return Building(costs.get("compile", 0.0), costs.get("emit", 0.0), first.front_end, slower, length)
+def building(entrant: Entrant, start: Start) -> Building:
+    """What came before the first picture."""
+    proving, printing = (entrant.costs.get(phase, 0.0) for phase in ("compile", "emit"))
+    return Building(proving, printing, start.front_end, start.machine_code, len(entrant.text))
 
 
 def work(answers: Answers) -> Work:

@@ -34,7 +34,7 @@ def ready(record: Record) -> float:
 def budgets(results: Results) -> Iterator[str]:
     """Table 1 of Balint & Kiglics (2021), with certified truth in the place of a thousand steps of the same method."""
     rows = []
-    for row in results.rows:
+    for row in results.places:
         first = row.at(REFERENCE, budget=TABLE_1)
         if first is None or not first.errors:
             continue
@@ -62,7 +62,7 @@ def budgets(results: Results) -> Iterator[str]:
 
 def keinert(results: Results) -> Iterator[str]:
     """Which omega is best, and what his ways to end a ray save."""
-    rows = [row for row in results.rows if len(_swept(row, 1.0)) > 2]
+    rows = [row for row in results.places if len(_swept(row, 1.0)) > 2]
     if not rows:
         return
     yield "## Keinert's findings (2014), measured again"

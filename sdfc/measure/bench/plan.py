@@ -40,8 +40,8 @@ class Sweep:
 
 
 KEINERT = (
-    Sweep(tuple(OMEGAS)),
-    Sweep(tuple(OMEGAS), HALF_PIXEL),
+    Sweep((REFERENCE, *OMEGAS)),
+    Sweep((REFERENCE, *OMEGAS), HALF_PIXEL),
     Sweep(FORCED, HALF_PIXEL, KEINERT_STEPS),
 )
 """His findings: which omega is best, what his early exit saves, what the choice of a candidate saves."""
@@ -49,7 +49,8 @@ KEINERT = (
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """A run. `budgets` are measured on the scenes `budgeted` (by file name) at tolerance 1, `sweeps` on `swept`.
+    """A run. `budgets` are measured on the scenes `budgeted` (by file name) at tolerance 1, `sweeps` on `swept`, both
+    in pictures that are `aside` times smaller: what counts there is a ray's steps.
 
     `grid`: the small picture whose every ray is judged; `random`: how many rays of the timed picture are. `most`: so
     many nodes of the field times rays are affordable for the truth of each; where there are more, of some of the rays.
@@ -64,28 +65,42 @@ class Wanted:
     budgeted: tuple[str, ...] = ()
     sweeps: tuple[Sweep, ...] = ()
     swept: tuple[str, ...] = ()
+    aside: int = 1
     repeat: int = 7
     grid: Size = (160, 90)
     random: int = 2000
     most: float = AFFORDABLE
     foreign: tuple[Path, ...] = ()
 
+    def sizes_of(self, scene: str) -> tuple[Size, ...]:
+        """At which a scene is measured."""
+        more = map(self._aside, self.sizes) if scene in (*self.swept, *self.budgeted) else ()
+        return tuple(dict.fromkeys((*self.sizes, *more)))
+
+    def _aside(self, size: Size) -> Size:
+        """The size of what is measured of parameters and budgets."""
+        return max(1, size[0] // self.aside), max(1, size[1] // self.aside)
+
     def groups(self, scene: str, size: Size) -> list[Group]:
         """What is measured of a scene at a size. A group's tracers are timed in turn, the reference among them."""
-        names = (*self.tracers, *(f"{FOREIGN}:{p.name}" for p in self.foreign))
-        made = [Group(scene, size, (*names, FLOOR), self.tolerances[0], None)]
-        made += [Group(scene, size, names, tolerance, None) for tolerance in self.tolerances[1:]]
-        if scene in self.swept:
-            made += [Group(scene, size, s.names, s.tolerance, s.budget) for s in self.sweeps]
-        if scene in self.budgeted:
-            few = tuple(name for name in self.tracers if name != AUTO)
-            made += [Group(scene, size, few, 1.0, budget) for budget in self.budgets]
+        made = []
+        if size in self.sizes:
+            names = (*self.tracers, *(f"{FOREIGN}:{p.name}" for p in self.foreign))
+            made = [Group(scene, size, (*names, FLOOR), self.tolerances[0], None)]
+            made += [Group(scene, size, names, tolerance, None) for tolerance in self.tolerances[1:]]
+        if size in map(self._aside, self.sizes):
+            if scene in self.swept:
+                made += [Group(scene, size, s.names, s.tolerance, s.budget) for s in self.sweeps]
+            if scene in self.budgeted:
+                few = tuple(name for name in self.tracers if name != AUTO)
+                made += [Group(scene, size, few, 1.0, budget) for budget in self.budgets]
         return made
 
     @property
     def cells(self) -> int:
         """How many cells there are in all."""
-        return sum(len(group.names) for p in self.scenes for size in self.sizes for group in self.groups(p.name, size))
+        places = ((path.name, size) for path in self.scenes for size in self.sizes_of(path.name))
+        return sum(len(group.names) for scene, size in places for group in self.groups(scene, size))
 
     @property
     def settings(self) -> dict[str, str]:
@@ -126,7 +141,7 @@ def all_tracers() -> tuple[str, ...]:
 
 def full() -> Wanted:
     """The run of the repository's results, as it is without scenes."""
-    return Wanted((), all_tracers(), budgets=BUDGETS, budgeted=BUDGETED, sweeps=KEINERT, swept=SWEPT)
+    return Wanted((), all_tracers(), budgets=BUDGETS, budgeted=BUDGETED, sweeps=KEINERT, swept=SWEPT, aside=2)
 
 
 def quick() -> Wanted:

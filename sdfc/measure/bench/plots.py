@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdfc.image.write import write
-from sdfc.measure.bench.plan import FOREIGN, OMEGAS, REFERENCE
+from sdfc.measure.bench.plan import FLOOR, FOREIGN, OMEGAS, REFERENCE
 from sdfc.measure.bench.record import Record
 from sdfc.measure.bench.store import Store, ordered
 
@@ -82,7 +82,9 @@ def all_of(store: Store, folder: Path) -> None:
 
 def time_against_error(records: list[Record]) -> Any:
     """A panel a scene: each tracer's tolerances, p99 error to the right, time upwards; the Pareto front in black."""
-    plain = [r for r in records if r.cell.budget is None and r.timing is not None and r.p99 > 0.0 and _is_plain(r)]
+    places = _compared(records)
+    plain = [r for r in records if r.timing is not None and r.p99 > 0.0 and _is_plain(r)]
+    plain = [r for r in plain if r.cell.budget is None and (r.cell.scene, r.cell.size) in places]
     if not plain:
         return None
     figure, axes = _panels({(r.cell.scene, r.cell.size): None for r in plain})
@@ -122,7 +124,9 @@ def error_against_budget(records: list[Record]) -> Any:
 
 def ratios(records: list[Record]) -> Any:
     """How many times as fast as the reference each tracer is, by scene, at tolerance 1."""
+    compared = _compared(records)
     some = [r for r in records if r.cell.budget is None and r.cell.tolerance == 1.0 and r.work and _is_plain(r)]
+    some = [r for r in some if (r.cell.scene, r.cell.size) in compared]
     rows = list(dict.fromkeys(f"{r.cell.scene} {r.cell.size}" for r in some))
     if not rows:
         return None
@@ -166,6 +170,11 @@ def pareto(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
         if not front or point[1] < front[-1][1]:
             front.append(point)
     return front
+
+
+def _compared(records: list[Record]) -> set[tuple[str, str]]:
+    """The scenes and sizes at which all tracers were compared."""
+    return {(r.cell.scene, r.cell.size) for r in records if r.cell.tracer == FLOOR}
 
 
 def _is_plain(record: Record) -> bool:

@@ -57,7 +57,8 @@ class Timing:
 class Building:
     """Milliseconds from scene to picture: proving, printing, the driver's GLSL front end, and machine code.
 
-    `first_draw` is how much longer the first frame took than the others: llvmpipe compiles then. `length`: characters.
+    `first_draw` is how much longer the first frame (a tiny one) took than the second: llvmpipe compiles then. `length`:
+    characters.
     """
 
     compile: float

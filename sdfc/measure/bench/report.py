@@ -8,7 +8,8 @@ from pathlib import Path
 
 from sdfc.measure.bench import findings
 from sdfc.measure.bench.markdown import geometric_mean, number, table
-from sdfc.measure.bench.plan import REFERENCE
+from sdfc.measure.bench.plan import FLOOR, REFERENCE
+from sdfc.measure.bench.record import Record
 from sdfc.measure.bench.results import PUBLISHED, Results, Row, speed_up
 from sdfc.measure.bench.store import RESULTS, Store
 from sdfc.measure.bench.tables import LEGEND, machine
@@ -23,7 +24,14 @@ def report(store: Store, folder: Path, page: Path) -> str:
     """The page, with links as they are from where it is kept (`-`: from here)."""
     results = Results(store)
     where = Path(os.path.relpath(folder, page.parent))
-    parts = [*_opening(store, folder, page), *_times(results), *_errors(results), *_worst(results), *_planner(results)]
+    parts = [
+        *_opening(store, folder, page),
+        *_times(results),
+        *_errors(results),
+        *_worst(results),
+        *_planner(results),
+        *_building(results),
+    ]
     parts += [*findings.budgets(results), *findings.keinert(results)]
     pictures = [*_PLOTS, *findings.PLOTS, *((p.name, p.name) for p in sorted(folder.glob("*.steps.png")))]
     shown = [f"![{text}]({(where / name).as_posix()})" for name, text in pictures if (folder / name).exists()]
@@ -59,36 +67,66 @@ def _times(results: Results) -> Iterator[str]:
         "the same tolerance or, where that is not so, at a finer one that was measured. The best is the fastest of "
         "those that lose the fewest rays; to be early is no loss."
     )
-    rows, of_reference, of_published = [], [], []
+    rows, ratios = [], []
     for row in results.rows:
-        first, best, mine = row.at(REFERENCE), row.best(PUBLISHED), row.at(ours)
-        ratios = speed_up(row, first, ours), speed_up(row, best, ours)
-        of_reference.append(ratios[0])
-        of_published.append(ratios[1])
-        rows.append(
-            (
-                row.name,
-                *(number(r.timing.median) if r is not None and r.timing else "-" for r in (first, best, mine)),
-                "-" if best is None else f"`{best.cell.tracer}`",
-                *map(number, ratios),
-                *(number(r.p99, 2) if r is not None else "-" for r in (first, best, mine)),
-                *(str(r.wrong) if r is not None else "-" for r in (first, best, mine)),
-            )
-        )
-    means = (number(geometric_mean(of_reference)), number(geometric_mean(of_published)))
-    rows.append(("**geometric mean**", "", "", "", "", *means))
-    head = ("scene", f"{REFERENCE} ms", "best ms", f"{ours} ms", "best", f"{REFERENCE} / {ours}", f"best / {ours}")
-    yield table((*head, f"p99 {REFERENCE}", "p99 best", f"p99 {ours}", "wrong", "wrong best", f"wrong {ours}"), rows)
-    yield f"Ratios could be given on {_given(of_reference)} and {_given(of_published)} of {len(results.rows)} scenes."
+        three = row.at(REFERENCE), row.best(PUBLISHED), row.at(ours)
+        ratios.append((speed_up(row, three[0], ours), speed_up(row, three[1], ours)))
+        rows.append(_time_row(row, three, ratios[-1]))
+    columns = list(zip(*ratios, strict=True))
+    rows.append(("**geometric mean**", *[""] * 5, *(number(geometric_mean(column)) for column in columns)))
+    times = ("scene", f"{FLOOR} ms", f"{REFERENCE} ms", "best ms", "best", f"{ours} ms")
+    head = (*times, f"{REFERENCE} / {ours}", f"best / {ours}", f"p99 {REFERENCE}", "p99 best", f"p99 {ours}")
+    yield table((*head, f"lost {REFERENCE}", "lost best", f"lost {ours}"), rows)
+    for words, column in zip((f"`{REFERENCE}`", "the best"), columns, strict=True):
+        given = [(ratio, row.name) for ratio, row in zip(column, results.rows, strict=True) if ratio == ratio]
+        least = f"; the least is {number(min(given)[0])} ({min(given)[1]})" if given else ""
+        yield f"Beside {words} a ratio could be given on {len(given)} of {len(results.rows)} scenes{least}."
 
 
-def _given(ratios: Sequence[float]) -> int:
-    return sum(r == r for r in ratios)
+def _time_row(row: Row, three: Sequence[Record | None], ratios: Sequence[float]) -> Sequence[str]:
+    floor, best = row.at(FLOOR), three[1]
+    ms = ["-" if r is None or r.timing is None else number(r.timing.median) for r in (floor, *three)]
+    ms.insert(3, "-" if best is None else f"`{best.cell.tracer}`")
+    return (
+        row.name,
+        *ms,
+        *map(number, ratios),
+        *("-" if r is None else number(r.p99, 2) for r in three),
+        *("-" if r is None else str(r.lost) for r in three),
+    )
+
+
+def _building(results: Results) -> Iterator[str]:
+    """From the scene to its first picture."""
+    ours = results.ours
+    yield "## From scene to picture"
+    yield (
+        f"Milliseconds for `{ours}`: proving and planning, printing, the driver's GLSL front end, and machine code "
+        "(the first frame, which is tiny, less the second), with Mesa's cache switched off. Of the others the last two "
+        "summed."
+    )
+    others = [name for name in results.tracers if name != ours]
+    rows = []
+    for row in results.rows:
+        mine = row.at(ours)
+        if mine is None or mine.building is None:
+            continue
+        b = mine.building
+        found = [row.at(name) for name in others]
+        drivers = [f"{r.building.front_end + r.building.first_draw:.0f}" if r and r.building else "-" for r in found]
+        phases = (f"{value:.0f}" for value in (b.compile, b.emit, b.front_end, b.first_draw))
+        rows.append((row.name, str(b.length), *phases, *drivers))
+    head = ("scene", "characters of GLSL", "proving", "printing", "front end", "machine code")
+    yield table((*head, *(f"`{name}`" for name in others)), rows)
 
 
 def _errors(results: Results) -> Iterator[str]:
     """What is wrong, by tracer, over all scenes."""
     yield "## Errors at tolerance 1, over all scenes"
+    yield (
+        "A hit is early before what twice the tolerance at the scene's far side allows. On a floor that goes on behind the "
+        "scene a marcher's tolerance grows with the distance, and it is early there by its own rule: p99 tells by how much."
+    )
     rows = []
     for name in results.tracers:
         found = [(row, r) for row in results.rows if (r := row.at(name)) is not None and r.errors]
@@ -157,5 +195,5 @@ def _planner(results: Results) -> Iterator[str]:
     yield table(("scene", "chosen", "fastest of all", "time of the fastest / of the chosen"), rows)
     yield (
         f"It was the fastest on {best_count} of {len(rows)} scenes, and within 10 % of the fastest on {close}; the "
-        "fastest is of the tracers that lose no more rays. Two rows of the same shader differ by noise."
+        "fastest is of the tracers that lose no more rays."
     )

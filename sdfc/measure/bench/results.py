@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sdfc.api.program import DEFAULT_TRACER
 from sdfc.measure.bench.entrants import AUTO
@@ -47,21 +47,23 @@ class Row:
 
 
 class Results:
-    """A run."""
+    """A run. `rows` are the scenes on which all tracers were compared; `places` are they and those of the sweeps."""
 
     def __init__(self, store: Store) -> None:
         records = ordered(store.records.values())
         places = dict.fromkeys((r.cell.scene, r.cell.size) for r in records)
-        one_size = len({size for _, size in places}) == 1
-        self.rows = [
+        self.places = [
             Row(
-                scene if one_size else f"{scene} {size}",
+                f"{scene} {size}",
                 scene,
                 size,
                 {r.cell: r for r in records if (r.cell.scene, r.cell.size) == (scene, size)},
             )
             for scene, size in places
         ]
+        rows = [row for row in self.places if row.at(FLOOR) is not None]
+        one_size = len({row.size for row in rows}) == 1
+        self.rows = [replace(row, name=row.scene) for row in rows] if one_size else rows
         names = dict.fromkeys(r.cell.tracer for r in records)
         self.tracers = tuple(n for n in names if ":" not in n and n != FLOOR and not n.startswith(FOREIGN))
         self.ours = AUTO if AUTO in self.tracers else DEFAULT_TRACER

@@ -10,6 +10,7 @@ from pathlib import Path
 from sdfc import pipeline
 from sdfc.api.renderer import GlRenderer
 from sdfc.api.source import from_path
+from sdfc.diagnostics import InternalError
 from sdfc.measure.bench import heat, machine, store
 from sdfc.measure.bench.competition import Competition
 from sdfc.measure.bench.plan import Wanted
@@ -47,7 +48,11 @@ def opened() -> Iterator[GlRenderer]:
 
 
 def bench(wanted: Wanted, folder: Path | None, progress: Progress, note: Note) -> Store:
-    """Measure what is wanted and not in the folder yet. Raises SceneError, RequestError, DeviceError."""
+    """Measure what is wanted and not in the folder yet. Raises SceneError, RequestError, DeviceError.
+
+    Where sdfc itself fails on a scene (two proofs that disagree, a shader refused), `failures` says so, and the others
+    are measured.
+    """
     with opened() as renderer:
         kept = store.opened(folder, machine.described(renderer.device), wanted.settings)
     kept.save()
@@ -62,12 +67,16 @@ def bench(wanted: Wanted, folder: Path | None, progress: Progress, note: Note) -
 
     scenes = {path: _loaded(path) for path in wanted.scenes}  # what is wrong with one is said before all is measured
     for path, scene in scenes.items():
-        for size in wanted.sizes:
-            with opened() as renderer:
-                competition = Competition(wanted, path.name, scene, size, renderer, kept)
-                competition.hold(finished)
-                if folder is not None:
-                    heat.draw(competition, folder, note)
+        for size in wanted.sizes_of(path.name):
+            try:
+                with opened() as renderer:
+                    competition = Competition(wanted, path.name, scene, size, renderer, kept)
+                    competition.hold(finished)
+                    if folder is not None:
+                        heat.draw(competition, folder, note)
+            except InternalError as error:  # a bug of ours must not cost the other scenes' hour
+                kept.failures.append(f"{path.name}: {error}")
+                note(kept.failures[-1])
     return kept
 
 

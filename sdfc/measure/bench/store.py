@@ -23,6 +23,7 @@ class Store:
     machine: dict[str, str] = field(default_factory=dict)
     settings: dict[str, str] = field(default_factory=dict)
     records: dict[Cell, Record] = field(default_factory=dict)
+    failures: list[str] = field(default_factory=list)  # scenes on which sdfc failed; not kept
 
     def kept(self, cell: Cell, key: str) -> Record | None:
         """The record of this cell, if it was made from the same."""

@@ -156,7 +156,9 @@ def _kinds(picture: Picture, truth: Certificate) -> dict[str, Mask]:
     t = np.where(both, picture.depth, 0.0)
     far = np.spacing(np.maximum(np.abs(picture.o).max(axis=0), np.abs(t)).astype(np.float32))
     near = np.spacing(np.maximum(1.0, np.abs(picture.o + t * picture.d).max(axis=0)).astype(np.float32))
-    slack = SLACK_ULPS * near + 2.0 * far  # of where the hit is; and a depth that is counted from the eye has its own ulp
+    slack = (
+        SLACK_ULPS * near + 2.0 * far
+    )  # of where the hit is; and a depth that is counted from the eye has its own ulp
     early = np.minimum(truth.t_early, truth.t_lo) - slack
     late = np.maximum(np.where(np.isfinite(truth.t_late), truth.t_late, truth.t_hi), truth.t_hi) + slack
     numbers = np.isfinite(picture.steps) & np.isfinite(picture.normal).all(axis=0)

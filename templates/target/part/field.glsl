@@ -1,26 +1,32 @@
 {% for param in params %}
 uniform {{ param.type }} {{ param.name }};  // {{ param.note }}
 {% endfor %}
+{% if not is_whole %}
 const float RADIUS = {{ radius }};  // the scene's own unit, and its own origin
 const vec3 CENTRE = {{ centre }};
+{% endif %}
+{% if part == "field" %}
 const float FAR = {{ far }};
+{% endif %}
 {% if needs_map_library %}
 {% include "lib/distance.glsl" %}
 {% endif %}
 
 {{ functions }}
 {{ tables }}
-{{ map }}
+// At most the distance from p to the surface; below 0 inside.
+{{ map | replace("float map(", "float sdf(") if is_whole else map }}
 {{ nearest.structure }}
 {{ nearest.function }}
-// At most the distance from p to the surface; below 0 inside.
-float sdf(vec3 p) { return RADIUS * map((p - CENTRE) / RADIUS); }
+{% if not is_whole %}
+float sdf(vec3 p) { return RADIUS * map({{ own_p }}); }
 
+{% endif %}
 // Its gradient, of the part that is nearest: the normal, on the surface.
-vec3 gradient(vec3 p) { return nearest((p - CENTRE) / RADIUS).field.xyz; }
+vec3 gradient(vec3 p) { return nearest({{ own_p }}).field.xyz; }
 
 // Which material is nearest.
-int material(vec3 p) { return int(nearest((p - CENTRE) / RADIUS).material + 0.5); }
+int material(vec3 p) { return int(nearest({{ own_p }}).material + 0.5); }
 
 // What it looks like; colours are linear.
 struct Properties {
@@ -34,6 +40,6 @@ struct Properties {
 };
 
 Properties properties(vec3 p) {
-    Nearest s = nearest((p - CENTRE) / RADIUS);
+    Nearest s = nearest({{ own_p }});
     return Properties({{ nearest_values }});
 }

@@ -10,6 +10,9 @@ _THINGS = (
     "torus(major: 0.5, minor: 0.12).rotate(x: 50deg).translate([0.9, 0.1, 0])",
     "union(blend: 0.2) { sphere(radius: 0.3) box(size: [0.9, 0.15, 0.2]) }.translate([-0.1, 0.75, 0])",
 )
+# thin, and marched within an intersection
+_PLATE = "rounded_box(size: [1, 1, 0.004], radius: 0.002) - cylinder(radius: 0.2, height: 1).rotate(x: 90deg)"
+_FLOOR = "plane(offset: -0.6)"
 _GROUP = f"union {{ {' '.join(f'({thing})' for thing in _THINGS)} }}"
 _EYE: Point = (2.1, 1.7, 2.9)
 _FAR_OUT = (0.0, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6)
@@ -33,9 +36,13 @@ def _scaled(by: float) -> Case:
     )
 
 
-def _seen_from(distance: float) -> Case:
-    eye = (0.55 * distance, 0.45 * distance, 0.7 * distance)
-    return Case(name=f"seen from {distance:g}", text=scene(_GROUP), view=look(eye, fov=min(0.8, 2.6 / distance)))
+def _seen_from(distance: float) -> tuple[Case, ...]:
+    view = look((0.55 * distance, 0.45 * distance, 0.7 * distance), fov=min(0.8, 2.6 / distance))
+    return (
+        Case(name=f"seen from {distance:g}", text=scene(_GROUP), view=view),
+        Case(name=f"a plate seen from {distance:g}", text=scene(_PLATE), view=view),
+        Case(name=f"a plate and a floor seen from {distance:g}", text=scene(_PLATE, _FLOOR), view=view),
+    )
 
 
 def _beside(ratio: float) -> tuple[Case, Case]:
@@ -57,7 +64,7 @@ FAMILIES = (
     Family(
         name="distance",
         doc="The eye far from the scene: the parameter of a hit is large, its last digit longer than what is seen.",
-        cases=tuple(_seen_from(d) for d in (1e1, 1e2, 1e3, 1e4, 1e5, 1e6)),
+        cases=tuple(case for d in (1e1, 1e2, 1e3, 1e4, 1e5, 1e6) for case in _seen_from(d)),
     ),
     Family(
         name="scale",

@@ -122,8 +122,8 @@ FAMILIES = (
         doc="Chains of a thousand operations.",
         cases=(
             Case(name="united 1000 times", text=scene(_union(1000)), view=_CORNER),
-            Case(name="united and cut 300 times by turns", text=scene(_by_turns(300)), view=_CORNER),
-            Case(name="a box less 40 holes, one by one", text=scene(_cuts(40)), view=look((1.2, 1.0, 3.2))),
+            Case(name="united and cut 200 times by turns", text=scene(_by_turns(200)), view=_CORNER),
+            Case(name="a box less 24 holes, one by one", text=scene(_cuts(24)), view=look((1.2, 1.0, 3.2))),
             Case(name="1000 moves", text=scene(_turns(500)), view=_CORNER),
             Case(name="1000 complements", text=scene(_complements(1000)), view=_CORNER),
             Case(name="a blend of 12 blends", text=scene(_blended(12)), view=_CORNER),
