@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sdfc.syntax.tree import FieldDeclaration
     from sdfc.tracers.record import Tracer
 
-LISTS = ("primitives", "operations", "tracers")
+LISTS = ("primitives", "operations", "tracers", "targets")
 _CHILD_KINDS = frozenset({"solid", "profile"})
 
 
@@ -34,12 +34,16 @@ def summary(program: Program) -> dict[str, int]:
 
 
 def listing(kind: str) -> list[tuple[str, str]]:
-    """How each primitive, operation or tracer is written, and its one line of description."""
+    """How each primitive, operation, tracer or target is written, and its one line of description."""
     (kind,) = checked_names("list", (kind,), LISTS)
     if kind == "tracers":
         from sdfc.tracers import TRACERS
 
         return [(_tracer_usage(tracer), _tracer_words(tracer)) for tracer in TRACERS.values()]
+    if kind == "targets":
+        from sdfc.glsl.targets import TARGETS
+
+        return [(f"{t.name} ({', '.join(t.stages)})", t.doc) for t in TARGETS.values()]
     from sdfc.scene.library import declaration, standard_names
 
     fields = [declaration(name) for name in standard_names()]

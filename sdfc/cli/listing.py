@@ -6,14 +6,14 @@ import click
 
 from sdfc.cli import options
 
-_KINDS = ("primitives", "operations", "tracers")
+_KINDS = ("primitives", "operations", "tracers", "targets")
 
 
 @click.command("list")
-@click.argument("kinds", nargs=-1, type=click.Choice(_KINDS), metavar="[primitives|operations|tracers]...")
+@click.argument("kinds", nargs=-1, type=click.Choice(_KINDS), metavar="[primitives|operations|tracers|targets]...")
 @options.json_option
 def command(kinds: tuple[str, ...], as_json: bool) -> None:
-    """List primitives, operations and tracers: all of them, or the kinds that are named."""
+    """List primitives, operations, tracers and targets: all of them, or the kinds that are named."""
     from sdfc.api.inspect import listing
 
     tables = {kind: listing(kind) for kind in kinds or _KINDS}

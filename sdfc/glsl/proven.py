@@ -18,7 +18,7 @@ from sdfc.glsl.many import ManyWriter
 from sdfc.glsl.parabola import parabola_next
 from sdfc.glsl.piece import piece_next
 from sdfc.glsl.scope import Intervals, Scope
-from sdfc.plan.plan import FINE
+from sdfc.plan.plan import FINE, SMALLEST_TOLERANCE
 from sdfc.plan.steps import (
     All,
     Any,
@@ -198,7 +198,8 @@ class ProvenWriter:
                 self._box(body, step.name, step.box)
                 self._boxes(body, step.step)
             case Chord():
-                self._box(body, f"box_{step.part.name}", step.part.box)
+                # wider than what counts as there: a ray along a wall would creep, its chords ending where it is
+                self._box(body, f"box_{step.part.name}", step.part.box.widened(8.0 * SMALLEST_TOLERANCE))
             case Any() | All():
                 for child in step.steps:
                     self._boxes(body, child)

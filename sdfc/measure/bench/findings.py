@@ -103,13 +103,13 @@ def _omega_table(row: Row) -> str:
                 number(_time(record)),
                 "-" if there is None else number(_evaluations(there)),
                 "-" if there is None else number(_time(there)),
-                str(record.wrong),
+                str(record.lost),
             )
         )
     sphere, rough = row.at(REFERENCE), row.at(REFERENCE, HALF_PIXEL)
     plain = [number(_evaluations(r)) if r is not None else "-" for r in (sphere, rough)]
-    rows.insert(0, ("`sphere`", plain[0], "1", plain[1], "1", str(sphere.wrong) if sphere is not None else "-"))
-    head = ("omega", "evaluations", f"time / {REFERENCE}", "at half a pixel", f"time / {REFERENCE}", "wrong")
+    rows.insert(0, ("`sphere`", plain[0], "1", plain[1], "1", str(sphere.lost) if sphere is not None else "-"))
+    head = ("omega", "evaluations", f"time / {REFERENCE}", "at half a pixel", f"time / {REFERENCE}", "lost")
     return table(head, rows)
 
 
@@ -170,7 +170,7 @@ Where this differs from his paper, and why:
 - His listing goes on with omega 1 for the rest of the ray once a look ahead has failed (ALGORITHMS A1, defect 3); ours
   takes one plain step and looks ahead again, so that a large omega is punished less.
 - His listing loses hits that a failed look has passed (defect 1), which makes it faster than it may be: those rays end
-  as misses. Ours may lose none; the column `wrong` counts what it does lose.
+  as misses. Ours may lose none; the column `lost` counts what it does lose.
 - His times are a GPU's, with shading; ours are llvmpipe's, of depth alone. It runs eight pixels in lockstep and skips
   nothing, so that time follows the slowest pixel of eight, and the bookkeeping of relaxation is paid on every pass:
   what is saved in evaluations is not all saved in time.

@@ -124,8 +124,9 @@ def _errors(results: Results) -> Iterator[str]:
     """What is wrong, by tracer, over all scenes."""
     yield "## Errors at tolerance 1, over all scenes"
     yield (
-        "A hit is early before what twice the tolerance at the scene's far side allows. On a floor that goes on behind the "
-        "scene a marcher's tolerance grows with the distance, and it is early there by its own rule: p99 tells by how much."
+        "A hit is early before what twice the tolerance at the scene's far side allows. On a floor that goes on behind "
+        "the scene a marcher's tolerance grows with the distance: it is early there by its own rule, and p99 tells by "
+        "how much."
     )
     rows = []
     for name in results.tracers:

@@ -57,6 +57,14 @@ def parallel(eye: Point, target: Point = ORIGIN, height: float = 2.4) -> View:
     return View(eye=eye, target=target, up=UP, height=height)
 
 
+def needle(point: Point, way: Point) -> View:
+    """A camera whose every ray starts at `point` less `way` and goes along `way`, to the last bit: it has no height.
+
+    The middle ray of any other camera is an ulp beside: where a ray starts is interpolated.
+    """
+    return parallel((point[0] - way[0], point[1] - way[1], point[2] - way[2]), point, 1e-60)
+
+
 def scene(*solids: str, before: str = "") -> str:
     """The text of a scene of these solids."""
     return f"{before}\nscene {{ {' '.join(solids)} }}\n"

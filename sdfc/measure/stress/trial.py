@@ -100,7 +100,7 @@ def _drawn(tracing: Tracing, compiled: Compiled, case: Case, size: tuple[int, in
     out = np.linalg.norm(picture.o + t * picture.d, axis=0)
     rounding = SMALLEST_TOLERANCE * np.maximum(1.0, np.where(t > 0.0, out, 0.0))
     exact = compiled.plan.tracer.needs_steps and is_closed(compiled.plan.root)
-    near = rounding if exact else np.maximum(rounding, FINE * pixel)
+    near = rounding if exact else np.maximum(2.0 * rounding, FINE * pixel)  # what is marched and cut is sunk by three
     end = np.inf if exact or compiled.frame.is_finite else 0.5 * HORIZON
     return _Drawn(case, pixels, picture, 2.0 ** np.ceil(np.log2(near)), (at_eye + growth * t) / finer, end)
 

@@ -7,6 +7,9 @@ const vec3 CENTRE = {{ centre }};
 {% endif %}
 {% if part == "field" %}
 const float FAR = {{ far }};
+{% else %}
+{% include "lib/intervals.glsl" %}
+
 {% endif %}
 {% if needs_map_library %}
 {% include "lib/distance.glsl" %}

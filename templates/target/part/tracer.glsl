@@ -6,8 +6,6 @@ float unfinished = 0.0;   // 1 where a ray was given up
 float travelled = 0.0;    // along the path, to where the ray at hand has t = 0
 vec2 cone = vec2(0.0);    // half a pixel: size at the eye, growth with the distance
 
-{% include "lib/intervals.glsl" %}
-
 {% include "lib/tolerance.glsl" %}
 
 {% if needs_marching %}

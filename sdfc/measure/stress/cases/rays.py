@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sdfc.measure.stress.record import ORIGIN, Case, Family, Point, look, parallel, scene
+from sdfc.measure.stress.record import ORIGIN, Case, Family, Point, look, needle, parallel, scene
 
 _ROUND = {  # solids whose silhouette, seen along -z, has its top at height 0.5
     "sphere": "sphere(radius: 0.5)",
@@ -149,9 +149,10 @@ def _through(name: str, solid: str, point: Point) -> tuple[Case, ...]:
     text = scene(solid)
     return (
         Case(name=name, text=text, view=look(_plus(point, (1.3, 0.9, 2.0)), point), is_odd=True),
-        Case(name=f"{name} from ahead", text=text, view=look(_plus(point, (0.0, 1.1, 2.6)), point), is_odd=True),
-        Case(
-            name=f"{name} from above", text=text, view=parallel(_plus(point, (0.0, 3.0, 0.0)), point, 0.6), is_odd=True
+        Case(name=f"{name} from above", text=text, view=look(_plus(point, (0.0, 3.0, 0.0)), point), is_odd=True),
+        *(
+            Case(name=f"{name} exactly along {axis}", text=text, view=needle(point, way), size=(1, 1))
+            for axis, way in _AXES.items()
         ),
     )
 
@@ -199,7 +200,7 @@ FAMILIES = (
     ),
     Family(
         name="edge",
-        doc="The middle ray goes exactly through a corner; some run along edges and within faces.",
+        doc="Rays through corners, along edges and within faces.",
         cases=tuple(case for name, (solid, corner) in _CORNERED.items() for case in _cornered(name, solid, corner)),
     ),
     Family(
@@ -223,7 +224,7 @@ FAMILIES = (
     ),
     Family(
         name="nan",
-        doc="The middle ray goes exactly through a point where the formula is 0/0: apexes, axes, centres.",
+        doc="Rays exactly through points where formulas are 0/0: apexes, axes, centres.",
         cases=tuple(case for name, (solid, point) in _POINTS.items() for case in _through(name, solid, point)),
     ),
 )
