@@ -27,6 +27,7 @@ from sdfc.plan.prove import Prover, Rays
 from sdfc.plan.setting import Setting, setting_of
 from sdfc.plan.view import CameraChange, pixel_at, target_of, uniforms_of
 from sdfc.scene.library import Library
+from sdfc.scene.literals import NO_LITERALS, Literals
 from sdfc.scene.model import Scene
 from sdfc.shape.graph import Shape
 from sdfc.tracers import TRACERS, choice
@@ -65,8 +66,8 @@ def deep_recursion() -> Iterator[None]:
         sys.setrecursionlimit(before)
 
 
-def load(source: Source, folder: Path | None = None, kind: Kind = "sdf") -> Scene:
-    """Read a scene. Raises SceneError with everything that is wrong with it."""
+def load(source: Source, folder: Path | None = None, kind: Kind = "sdf", literals: Literals = NO_LITERALS) -> Scene:
+    """Read a scene; `literals` are to be live. Raises SceneError with everything that is wrong with it."""
     with deep_recursion():
         if kind == "csg":
             from sdfc.openscad.load import load as load_csg
@@ -74,7 +75,7 @@ def load(source: Source, folder: Path | None = None, kind: Kind = "sdf") -> Scen
             return load_csg(source)
         from sdfc.scene.elaborate import elaborate
 
-        scene = elaborate(source, folder)
+        scene = elaborate(source, folder, literals)
     for param in scene.params[MOST_PARAMS:]:
         message = f"a scene has at most {MOST_PARAMS} params: '{param.name}' is one too many"
         raise scene_error(message, param.span, "make one a constant with `def`")

@@ -54,9 +54,11 @@ def decide(scene: Scene, renderer: GlRenderer | None, pilot: bool) -> Decision:
         found = candidates(plain.plan, scene.values, speeds, dear.plan if is_dearer else None)
     legal = [c for c in found if not c.illegal]
     close = [c for c in legal if c.milliseconds <= CLOSE * legal[0].milliseconds][:_MOST_TRIED]
+    if len(legal) == 1:
+        return Decision(legal[0], tuple(found), speeds, {}, "nothing else is legal")
     if len(close) == 1:
         others = f"the next is predicted to take {legal[1].milliseconds / legal[0].milliseconds:.1f} times as long"
-        return Decision(legal[0], tuple(found), speeds, {}, others if len(legal) > 1 else "nothing else is legal")
+        return Decision(legal[0], tuple(found), speeds, {}, others)
     if renderer is not None:
         times = _piloted(scene, close, renderer, plain, pilot)
         if times:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING
 
 from sdfc.api.renderer import Buffer, Progress, Shot, jitter
@@ -42,6 +43,10 @@ class CpuRenderer:
     def depth(self, shot: Shot, progress: Progress | None) -> Buffer:
         """See Renderer."""
         return self.probe(shot, progress)[0]
+
+    def kept_frames(self) -> AbstractContextManager[None]:
+        """Holds none."""
+        return nullcontext()
 
     def close(self) -> None:
         """Holds nothing."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 from warnings import warn
 
-from sdfc.api.renderer import GlRenderer, Progress, Renderer, Shot
+from sdfc.api.job import Job
+from sdfc.api.renderer import GlRenderer, Progress, Renderer
 from sdfc.api.request import (
     AUTO,
     Setting,
@@ -25,7 +26,7 @@ from sdfc.diagnostics import DeviceError, Diagnostic
 from sdfc.image.picture import AOVS, Image
 
 if TYPE_CHECKING:
-    from sdfc.image.picture import Array
+    from sdfc.api.animation import Change
     from sdfc.pipeline import Compiled, Options
     from sdfc.plan.prove import Rays
     from sdfc.scene.model import Param, Scene
@@ -33,8 +34,6 @@ if TYPE_CHECKING:
 BACKENDS = ("auto", "gl", "cpu")
 DEFAULT_SIZE = (1280, 720)
 DEFAULT_TRACER = AUTO
-FLOAT32 = 2.0**-22  # of the scene's radius: what hits are right to (plan.GROW)
-FEWEST_DIGITS = 4.0 * FLOAT32  # the narrowest pixel that float32 is good for
 
 
 class Program:
@@ -133,21 +132,62 @@ class Program:
         `params` are in the scene's units (angles in radians, colours linear); `progress` is told the share done and may
         raise to stop; `note` is told what happened that was not asked for (no OpenGL: slower).
         """
+        values, view = checked_params(self.params, params or {}), camera or View()
+        job = self._job(size, samples, tracer, backend, aovs, note)
+        job.tell(view, values, note)
+        return job.image(view, values, progress)
+
+    def frames(
+        self,
+        frames: range,
+        size: tuple[int, int] = DEFAULT_SIZE,
+        *,
+        fps: float = 30.0,
+        loop: bool = False,
+        skip: Container[int] = (),
+        camera: View | None = None,
+        params: Mapping[str, Change] | None = None,
+        samples: int = 1,
+        tracer: str = DEFAULT_TRACER,
+        backend: str = "auto",
+        aovs: Iterable[str] = (),
+        progress: Progress | None = None,
+        note: Callable[[str], None] = warn,
+    ) -> Iterator[Image]:
+        """The pictures of an animation, compiled once and drawn as they are asked for, but for the frames in `skip`.
+
+        A param may be a Sweep over the frames (`loop`: to be repeated without a halt), or a text like `0deg..360deg`;
+        one named `time` is frame / fps, unless it is given. Values are checked at once, before anything is drawn.
+        """
+        from sdfc.api.animation import Timeline, motion_of, pictures
+
+        motion, view = motion_of(self.params, params or {}, Timeline(frames, fps, loop)), camera or View()
+        wanted = [frame for frame in frames if frame not in skip]
+        if not wanted:
+            return iter(())
+        if motion.is_still and len(frames) > 1:
+            note("all frames are the same: sweep a param (0..1), or give the scene one named 'time'")
+        job = self._job(size, samples, tracer, backend, aovs, note, len(wanted))
+        job.tell(view, motion.values(wanted[0]), note)
+        return pictures(job, view, wanted, motion.values, progress)
+
+    def _job(
+        self,
+        size: tuple[int, int],
+        samples: int,
+        tracer: str,
+        backend: str,
+        aovs: Iterable[str],
+        note: Callable[[str], None],
+        count: int = 1,
+    ) -> Job:
+        """What is asked for, checked, on its device, and compiled as `count` such pictures are worth it."""
         size, samples = checked_size(size), checked_samples(samples)
         wanted = checked_names("image", aovs, AOVS)
-        values = checked_params(self.params, params or {})
         (backend,) = checked_names("backend", (backend,), BACKENDS)
         renderer = self._renderer(backend, note)
-        compiled = self._chosen(checked_tracer(tracer), renderer, size[0] * size[1] * samples)
-        shot = Shot(compiled, camera or View(), values, size)
-        if isinstance(renderer, GlRenderer):
-            _note_digits(shot, note)
-        elif not compiled.plan.tracer.needs_steps:
-            note(f"NumPy traces by the step rules of 'proven' alone: '{compiled.plan.tracer.name}' is for OpenGL")
-        passes = samples + bool(wanted)
-        colour = _accumulated(renderer, shot, [_part(progress, sample, passes) for sample in range(samples)])
-        kept = _aovs(renderer, shot, wanted, _part(progress, samples, passes)) if wanted else {}
-        return Image(colour, kept, tuple(shot.compiled.materials), renderer.name)
+        compiled = self._chosen(checked_tracer(tracer), renderer, size[0] * size[1] * samples * count)
+        return Job(renderer, compiled, size, samples, wanted)
 
     def _chosen(self, tracer: str, renderer: Renderer, rays: int) -> Compiled:
         """The scene as it will be traced: as asked, or for much work as the planner finds it to be fastest."""
@@ -159,7 +199,7 @@ class Program:
 
     def _renderer(self, backend: str, note: Callable[[str], None]) -> Renderer:
         if backend not in self._renderers:
-            self._renderers[backend] = _opened(backend, note)
+            self._renderers[backend] = open_renderer(backend, note)
         return self._renderers[backend]
 
     def close(self) -> None:
@@ -189,7 +229,8 @@ def compile(scene: str | Path, kind: Kind | None = None) -> Program:
     return load(from_text(scene, kind or "sdf"))
 
 
-def _opened(backend: str, note: Callable[[str], None]) -> Renderer:
+def open_renderer(backend: str, note: Callable[[str], None]) -> Renderer:
+    """What draws: OpenGL where there is one, or NumPy, which `note` is told."""
     if backend != "cpu":
         try:
             return GlRenderer()
@@ -203,59 +244,6 @@ def _opened(backend: str, note: Callable[[str], None]) -> Renderer:
     return CpuRenderer()
 
 
-def _note_digits(shot: Shot, note: Callable[[str], None]) -> None:
-    """Say so where float32 has not enough digits for what is looked at: small things in a scene that is very large."""
-    pixel, radius = shot.compiled.pixel(shot.view, shot.params, shot.size), shot.compiled.frame.radius
-    if pixel < FEWEST_DIGITS:
-        note(
-            f"a pixel is {pixel * radius:.2g} wide where the camera looks, but in a scene of radius {radius:.3g} "
-            f"float32 is right to {FLOAT32 * radius:.2g}: expect faults (--backend cpu has float64)"
-        )
-
-
 def _close_all(renderers: dict[str, Renderer]) -> None:
     while renderers:
         renderers.popitem()[1].close()
-
-
-def _accumulated(renderer: Renderer, shot: Shot, parts: Sequence[Progress | None]) -> Array:
-    """The mean radiance of one sample for each part of the progress, float32 (height, width, 3)."""
-    import numpy as np
-
-    total = np.zeros((shot.size[1], shot.size[0], 3))
-    for sample, part in enumerate(parts):
-        total += renderer.radiance(shot, sample, part)[..., :3]
-    if not np.isfinite(total).any():
-        raise DeviceError(f"{renderer.name} drew nothing but NaN")
-    return (total / len(parts)).astype(np.float32)
-
-
-def _aovs(renderer: Renderer, shot: Shot, wanted: tuple[str, ...], progress: Progress | None) -> dict[str, Array]:
-    """The images beside the colour that are wanted, in the forms that Image documents."""
-    import numpy as np
-
-    if set(wanted) <= {"depth", "steps"}:
-        first = normal = position = renderer.depth(shot, progress)
-    else:
-        first, normal, position, _ = renderer.probe(shot, progress)
-    hit = first[..., 3] > 0.5
-    made: dict[str, Callable[[], Array]] = {
-        "depth": lambda: np.where(hit, first[..., 0], np.inf).astype(np.float32),
-        "normal": lambda: np.where(hit[..., None], normal[..., :3], 0.0).astype(np.float32),
-        "position": lambda: np.where(hit[..., None], position[..., :3], np.nan).astype(np.float32),
-        "material": lambda: np.where(hit, np.round(first[..., 2]), -1).astype(np.int32),
-        "steps": lambda: np.round(first[..., 1]).astype(np.int32),
-    }
-    return {name: made[name]() for name in wanted}
-
-
-def _part(progress: Progress | None, index: int, count: int) -> Progress | None:
-    """Progress of one of `count` equal parts, as progress of the whole."""
-    if progress is None:
-        return None
-    whole = progress
-
-    def report(share: float) -> None:
-        whole((index + share) / count)
-
-    return report

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol, TypeAlias
 
@@ -54,6 +54,9 @@ class Renderer(Protocol):
     def depth(self, shot: Shot, progress: Progress | None) -> Buffer:
         """The first image of `probe` alone, without material: nothing is computed that a depth image does not need."""
 
+    def kept_frames(self) -> AbstractContextManager[None]:
+        """Meanwhile, what pictures are drawn into is kept from one to the next."""
+
     def close(self) -> None:
         """Give back what it holds."""
 
@@ -96,8 +99,10 @@ class GlRenderer:
 
     def __init__(self) -> None:
         from sdfc.gpu.device import open_device
+        from sdfc.gpu.frames import Frames
 
         self.device = open_device()
+        self._frames = Frames(self.device)
         self._programs: dict[str, FragmentProgram] = {}
 
     @property
@@ -125,17 +130,14 @@ class GlRenderer:
     @contextmanager
     def prepared(self, shot: Shot, entry: str, attachments: int = 1) -> Iterator[Prepared]:
         """A shot whose programs are compiled and whose frame is there, to be drawn as often as a measurement asks."""
-        from sdfc.gpu.frame import Frame
-
         program = self._program(shot.compiled.glsl(entry, "fragment"), shot.compiled.vertex())
         uniforms = shot.compiled.uniforms(shot.view, shot.params, shot.size)
-        with self._sweep(shot) as sweep, Frame(self.device, *shot.size, attachments) as frame:
+        with self._sweep(shot) as sweep, self._frames.lent(*shot.size, attachments) as frame:
             yield Prepared(frame, program, uniforms, sweep)
 
     @contextmanager
     def _sweep(self, shot: Shot) -> Iterator[Sweep | None]:
         """The shot's cone prepass, if its plan has one."""
-        from sdfc.gpu.frame import Frame
         from sdfc.gpu.program import FragmentProgram
 
         if not shot.compiled.plan.prepass:
@@ -144,15 +146,13 @@ class GlRenderer:
         glsl = shot.compiled.glsl("cone", "fragment")
         if glsl not in self._programs:
             self._programs[glsl] = FragmentProgram(self.device, glsl)
-        with Frame(self.device, *(-(-side // TILE) for side in shot.size)) as tiles:
+        with self._frames.lent(*(-(-side // TILE) for side in shot.size)) as tiles:
             yield Sweep(tiles, self._programs[glsl])
 
     def _draw(self, shot: Shot, entry: str, attachments: int, sample: int, progress: Progress | None) -> list[Buffer]:
-        from sdfc.gpu.frame import Frame
-
         program = self._program(shot.compiled.glsl(entry, "fragment"), shot.compiled.vertex())
         uniforms = shot.compiled.uniforms(shot.view, shot.params, shot.size, jitter(sample))
-        with self._sweep(shot) as sweep, Frame(self.device, *shot.size, attachments) as frame:
+        with self._sweep(shot) as sweep, self._frames.lent(*shot.size, attachments) as frame:
             if sweep is not None:
                 sweep.draw(uniforms)
             frame.draw(program, uniforms, progress)
@@ -168,9 +168,19 @@ class GlRenderer:
             self._programs[glsl] = FragmentProgram(self.device, glsl, vertex)
         return self._programs[glsl]
 
+    def keep(self, fragments: Collection[str]) -> None:
+        """Release every program but those of these fragment shaders."""
+        for glsl in self._programs.keys() - set(fragments):
+            self._programs.pop(glsl).release()
+
+    def kept_frames(self) -> AbstractContextManager[None]:
+        """See Renderer."""
+        return self._frames.kept()
+
     def close(self) -> None:
         """Give the device back, and its programs with it."""
         self._programs.clear()
+        self._frames.release()
         self.device.close()
 
 

@@ -138,8 +138,12 @@ def _bench(wanted: Wanted, folder: Path | None) -> Store:
     from sdfc.measure.bench import plots, tables
     from sdfc.measure.bench.run import bench
 
+    said: set[str] = set()
+
     def note(text: str) -> None:
-        click.echo(f"note: {text}", err=True)
+        if text not in said:  # once, not once a scene
+            click.echo(f"note: {text}", err=True)
+        said.add(text)
 
     with ProgressBar("measuring") as bar:
         store = bench(wanted, folder, lambda done, count, _: bar(done / count), note)

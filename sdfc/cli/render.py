@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from sdfc.cli import options
-from sdfc.cli.values import parse_camera, parse_settings, parse_size
-
-if TYPE_CHECKING:
-    from sdfc.api import Image
+from sdfc.cli.animate import animate, animation_options, check_still
+from sdfc.cli.values import parse_camera, parse_changes, parse_size
 
 
 def _size(_: click.Context, __: click.Parameter, text: str) -> tuple[int, int]:
@@ -20,7 +18,7 @@ def _size(_: click.Context, __: click.Parameter, text: str) -> tuple[int, int]:
 
 
 def _settings(_: click.Context, __: click.Parameter, texts: tuple[str, ...]) -> dict[str, Any]:
-    return parse_settings(texts)
+    return parse_changes(texts)
 
 
 def _camera(_: click.Context, __: click.Parameter, texts: tuple[str, ...]) -> dict[str, Any]:
@@ -41,7 +39,8 @@ def _aovs(_: click.Context, __: click.Parameter, text: str) -> tuple[str, ...]:
     multiple=True,
     callback=_settings,
     metavar="NAME=VALUE",
-    help="Give a param of the scene another value: 0.5, 30deg, #ff8800, 1,2,3. May be repeated.",
+    help="Give a param of the scene another value: 0.5, 30deg, #ff8800, 1,2,3; or sweep it over the frames of an"
+    " animation: 0deg..360deg. May be repeated.",
 )
 @click.option(
     "--camera",
@@ -62,16 +61,27 @@ def _aovs(_: click.Context, __: click.Parameter, text: str) -> tuple[str, ...]:
 )
 @click.option("--aov-format", default="npy", show_default=True, type=click.Choice(["npy", "exr", "png"]))
 @click.option("--backend", default="auto", show_default=True, type=click.Choice(["auto", "gl", "cpu"]))
+@animation_options
 @options.json_option
 def command(scene: Path, scene_format: str | None, output: Path, **asked: Any) -> None:
-    """Render SCENE to a picture."""
+    """Render SCENE to a picture, or to an animation."""
+    started = time.perf_counter()
+    if asked["frames"] is None:
+        check_still(output, asked)
+        details = _picture(scene, scene_format, output, asked)
+    else:
+        details = animate(scene, scene_format, output, asked)
+    if asked["as_json"]:
+        options.say("", {**details, "seconds": round(time.perf_counter() - started, 3)}, True)
+
+
+def _picture(scene: Path, scene_format: str | None, output: Path, asked: dict[str, Any]) -> dict[str, Any]:
     from sdfc.api.files import check_files, write_files
     from sdfc.api.request import View
     from sdfc.cli.progress import ProgressBar
 
     check_files(output, asked["aovs"], asked["aov_format"])
     view = View(**asked["camera"])
-    started = time.perf_counter()
     with options.program(scene, scene_format) as program, ProgressBar("rendering") as progress:
         image = program.render(
             asked["size"],
@@ -85,15 +95,9 @@ def command(scene: Path, scene_format: str | None, output: Path, **asked: Any) -
             note=lambda text: click.echo(f"note: {text}", err=True),
         )
     written = write_files(image, output, asked["aov_format"])
-    if asked["as_json"]:
-        options.say("", _details(image, written, time.perf_counter() - started), True)
-
-
-def _details(image: Image, written: list[Path], seconds: float) -> dict[str, Any]:
     return {
         "files": [str(path) for path in written],
         "size": list(image.size),
         "renderer": image.renderer,
         "materials": list(image.materials),
-        "seconds": round(seconds, 3),
     }

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
+    from sdfc.api.animation import Sweep
     from sdfc.api.quantity import Quantity
 
 _VECTORS = ("eye", "target", "up")
@@ -27,15 +28,37 @@ def parse_settings(texts: Iterable[str]) -> dict[str, Quantity]:
     """`name=value` pairs, each name once."""
     from sdfc.api.quantity import parse_quantity
 
-    settings: dict[str, Quantity] = {}
+    return {name: parse_quantity(value) for name, value in _pairs(texts).items()}
+
+
+def parse_changes(texts: Iterable[str]) -> dict[str, Quantity | Sweep]:
+    """`name=value` and `name=start..end` pairs, each name once."""
+    from sdfc.api.animation import parse_change
+
+    return {name: parse_change(value) for name, value in _pairs(texts).items()}
+
+
+def parse_frames(text: str) -> range:
+    """`0..120`: the first frame and the last."""
+    match = re.fullmatch(r"([+-]?\d{1,9})\s*\.\.\s*([+-]?\d{1,9})", text.strip())
+    if match is None:
+        raise click.BadParameter(f"'{text}' is not a first and a last frame like 0..120")
+    first, last = int(match[1]), int(match[2])
+    if last < first:
+        raise click.BadParameter(f"'{text}' ends before it begins")
+    return range(first, last + 1)
+
+
+def _pairs(texts: Iterable[str]) -> dict[str, str]:
+    pairs: dict[str, str] = {}
     for text in texts:
         name, equals, value = (part.strip() for part in text.partition("="))
         if not equals or not name:
             raise click.BadParameter(f"'{text}' is not of the form name=value")
-        if name in settings:
+        if name in pairs:
             raise click.BadParameter(f"'{name}' is set twice")
-        settings[name] = parse_quantity(value)
-    return settings
+        pairs[name] = value
+    return pairs
 
 
 def parse_camera(texts: Iterable[str]) -> dict[str, Any]:

@@ -16,6 +16,7 @@ __all__ = ["EXIT_TERMINATED", "command"]
 
 _VERBS: dict[str, tuple[str, str]] = {
     "render": ("sdfc.cli.render", "Render a scene to a picture."),
+    "watch": ("sdfc.cli.watch", "Render a scene again whenever it is saved."),
     "check": ("sdfc.cli.check", "Say what is wrong with a scene, or show what the compiler makes of it."),
     "explain": ("sdfc.cli.explain", "Say what is proved of a scene, and how it will be traced."),
     "emit-glsl": ("sdfc.cli.emit_glsl", "Write a scene as one complete GLSL shader."),

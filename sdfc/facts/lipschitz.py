@@ -29,7 +29,6 @@ from sdfc.shape.graph import (
 )
 from sdfc.shape.lower import lower
 
-
 _MOST_SUSPECTS = 2000  # nodes of a formula that are looked at for what makes it steep
 _STEEP = MappingProxyType(
     {

@@ -19,6 +19,7 @@ from sdfc.shape.lower import Lowering
 
 _PARABOLA = 1.4  # what a step by a parabola costs, in steps by balls: 1.2 to 1.6, measured on llvmpipe
 _BALL, _PIECE = 10.0, 40.0  # additions that a step takes besides the field's own
+_DENSE = 0.6  # of what is counted for a piece, it takes: its many small operations wait for nothing (measured there)
 _FEW = 8.0  # steps: no other rule pays where there are no more
 _EXACT = (Exactness.EXACT, Exactness.EXACT_OUTSIDE)
 
@@ -38,7 +39,7 @@ class Rules:
     def __init__(self, ranges: Ranges, bounds: Bounds, lipschitz: Lipschitz) -> None:
         self._ranges = ranges
         self._bounds = bounds
-        self._bends = Bends(ranges, bounds, lipschitz)
+        self.bends = Bends(ranges, bounds, lipschitz)
         self._found: dict[tuple[int, Box, float, bool], Rule | None] = {}
 
     def best(self, shape: Apply, region: Box, lipschitz: float, inside: bool) -> Rule | None:
@@ -66,7 +67,7 @@ class Rules:
     def _chosen(self, shape: Apply, region: Box, lipschitz: float, inside: bool) -> Rule:
         from sdfc.field.trial import Trial
 
-        bend = self._bends.bound(shape, region) if inside else None
+        bend = self.bends.bound(shape, region) if inside else None
         is_exact = exactness(shape)[shape.id] in _EXACT
         if bend is None and is_exact:
             return Rule()
@@ -97,7 +98,7 @@ class Rules:
 
         graph = value.graph
         ahead = span(value, graph.input("p"), graph.input("d"), graph.input("s", Type.FLOAT))
-        return (cost([value, *ahead.value, *ahead.slope]) + _PIECE) / (cost([value]) + _BALL)
+        return _DENSE * (cost([value, *ahead.value, *ahead.slope]) + _PIECE) / (cost([value]) + _BALL)
 
     def _middle(self, bend: Expr) -> float:
         """The bend at the middle values of the params."""

@@ -32,7 +32,7 @@ def look(
     It is there where no more than eps is clear of so short a piece: the slope near by counts, not the steepest.
     """
     low, _, fall, rise = span
-    depth = sunk * np.minimum(lipschitz, np.maximum(-fall, rise))
+    depth = sunk * np.maximum(np.maximum(-rise, fall), 0.0)  # it falls, or has risen, by this in the length `sunk`
     above = value + depth
     empty = (above > 0.0) & ((low + depth > 0.0) | (fall >= 0.0))
     part = np.minimum(length, np.maximum(above, 0.0) / np.maximum(-fall, 1e-30))

@@ -1,4 +1,4 @@
-"""Rays tried in float64 before a rule is chosen: how many steps each rule takes to the surface, and what is unbounded."""
+"""Rays tried in float64 before a rule is chosen: the steps that each rule takes to the surface; what is unbounded."""
 
 from __future__ import annotations
 
@@ -25,8 +25,9 @@ MOST = 80  # steps: what takes longer is long either way
 _LATE = 4 * MOST  # what a ray still counts that is not there by then: its tracer would stop too early
 NEAR = 1e-5  # of the box: what counts as there
 _CUTS = 16  # of a piece that no bound is known for, before it counts as one
+_STEEP = 1e-4 * HUGE  # what is steeper may be a jump
 _PIECES = 16  # of a ray, to begin with
-_JUMP = 0.1  # of all its change: what a field may change by in so short a piece
+_LESS = 0.6  # of what it may change by in a piece, what it may in one that was cut for half of _CUTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,26 +96,25 @@ class Trial:
     def is_bounded(self) -> bool:
         """Whether spans bound the field along rays, however short they must be: it has no jump, and no pole.
 
-        Pieces without a bound of the slope are cut until they are too short to matter: in what is left the value may
-        not change by much.
+        Pieces without a bound of the slope are cut: the shorter they are, the less the value must be able to change.
+        Where cells of a repetition meet it is as if it jumped, whatever the value really does: all of a cell is met.
         """
         evaluate, rays = self._spans(), self._rays
         which = np.repeat(np.arange(RAYS), _PIECES)
         length = (rays.last - rays.first)[which] / _PIECES
         start = rays.first[which] + np.tile(np.arange(_PIECES), RAYS) * length
-        whole = 0.0
+        wide = np.full(start.shape, np.inf)
         for cut in range(_CUTS):
             found = evaluate({**rays.at(start, which), "s": length}, self._params)
-            value, low, high, fall, rise = (np.broadcast_to(a, start.shape) for a in found)
-            if cut == 0:
-                whole = float(np.ptp(value[np.isfinite(value)])) if np.isfinite(value).any() else 0.0
-            open_ = ~((fall > -HUGE) & (rise < HUGE)) | ~(np.isfinite(low) & np.isfinite(high))
-            if not open_.any():
+            _, low, high, fall, rise = (np.broadcast_to(a, start.shape) for a in found)
+            known = (fall > -_STEEP) & (rise < _STEEP) & (low > -_STEEP) & (high < _STEEP)
+            if known.all():
                 return True
             if cut + 1 == _CUTS:
-                return bool(((high - low)[open_] < _JUMP * whole).all())
-            some = np.flatnonzero(open_)[: 8 * RAYS]
-            which, length = np.tile(which[some], 2), np.tile(0.5 * length[some], 2)
+                return bool((known | (high - low < _LESS * wide)).all())
+            wide = np.where(cut == _CUTS // 2, high - low, wide)
+            some = np.flatnonzero(~known)[: 8 * RAYS]
+            which, length, wide = np.tile(which[some], 2), np.tile(0.5 * length[some], 2), np.tile(wide[some], 2)
             start = np.concatenate([start[some], start[some] + length[: some.size]])
         raise AssertionError("the last cut decides")
 

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 from sdfc.field.graph import Expr, FieldGraph
 from sdfc.glsl.body import Body, own_point
 from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Functions, Role
 from sdfc.plan.steps import Ball
-
-_UNKNOWN = 1e9  # a Lipschitz constant that says nothing, as a float32 that can be divided by
-
 
 def piece_next(
     graph: FieldGraph, functions: Functions, body: Body, step: Ball, direction: Expr, box: str, cut: bool
@@ -31,8 +26,7 @@ def piece_next(
     body.once(f"float v_{ahead} = {before}{value};", part.span)
     span = body.call(functions.of_part(part, Role.SPAN), [q, body.text(direction), ahead])
     body.once(f"vec4 span_{ahead} = {before}{span}{'' if step.inside else '.yxwz'};", part.span)
-    lipschitz = max(step.lipschitz, 1e-9) if math.isfinite(step.lipschitz) else _UNKNOWN
+    least = literal(1.0 / max(step.lipschitz, 1e-9))
     # a hit on what is cut away lies inside it, by more than its own tolerance
     sunk = f"3.0 * {eps}" if not step.inside else "sunk" if cut else "0.0"
-    radius = f"v_{ahead} / {literal(lipschitz)}"
-    return f"piece(t, {ahead}, vec2(v_{ahead}, {radius}), span_{ahead}, {literal(lipschitz)}, {sunk}, {eps})"
+    return f"piece(t, {ahead}, v_{ahead}, span_{ahead}, {least}, {sunk}, {eps})"

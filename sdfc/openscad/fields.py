@@ -78,6 +78,9 @@ class _Text:
     def names(self) -> Sequence[str]:
         return list(_declarations())
 
+    def literal(self, node: tree.Number, number: float) -> Expr | None:
+        return None
+
     def step(self, span: Span) -> None:
         """Formulas of one's own are of a known size."""
 

@@ -38,6 +38,7 @@ _PIXEL = 1e-3  # half a pixel, in radii: what predictions are made for
 # passes of marching, by the rule of the scene's slowest part (ALGORITHMS E)
 _PASSES = {"closed": 1.0, "tangent": 3.5, "chord": 4.5, "blend": 5.0, "slope": 6.0}
 _DUAL = 1.85  # what a value with its slope costs, in values: measured 1.73 to 1.86 (ALGORITHMS E)
+_PIECE = 5.0  # what a value with bounds over a piece of the ray costs, in values: measured 2.5 to 6
 _OWN = frozenset({Kind.COUNT, Kind.NUMBERS, Kind.POINTS2, Kind.POINTS3})  # values that shape the formula itself
 _BEAM_GAIN, _BEAM_COST = 0.75, 0.2  # passes with the cone prepass, and what it costs itself, of those without
 
@@ -154,7 +155,8 @@ def _passes(leaf: Leaf) -> float:
         case Blend():
             return _PASSES["blend"]
         case Ball():
-            return _classic() if leaf.bend is None else _PASSES["slope"]
+            is_plain = leaf.bend is None and not leaf.ahead
+            return _classic() if is_plain else _PASSES["slope"]
         case _:
             assert_never(leaf)
 
@@ -190,6 +192,8 @@ class _Work:
             case Chord():
                 return 2.0 * self.slope(leaf.part)
             case Ball():
+                if leaf.ahead:
+                    return _PIECE * self.value(leaf.part)
                 return self.value(leaf.part) if leaf.bend is None else self.slope(leaf.part)
             case _:
                 assert_never(leaf)

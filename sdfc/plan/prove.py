@@ -39,7 +39,9 @@ from sdfc.shape.stretch import largest_stretch, smallest_stretch
 
 Rays: TypeAlias = Literal["cheap", "all"]
 
-_OURS = frozenset({"bounds", "solid", "live", "joined", "near", "far", "ahead"})  # generated names begin so, and end in a number
+_OURS = frozenset(
+    {"bounds", "solid", "live", "joined", "near", "far", "ahead"}
+)  # generated names begin so, and end in a number
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +211,10 @@ class Prover:
         """The operands of a smooth union in the scene's own space, or None where it is not one of leaves and unions."""
         if leaf.affine is not None or not self._is_blend(leaf.shape):
             return None
-        return self._blend_of(leaf.shape, leaf)
+        try:
+            return self._blend_of(leaf.shape, leaf)
+        except SceneError:  # of an operand no Lipschitz constant is known
+            return None
 
     def _is_blend(self, shape: Apply) -> bool:
         claims = shape.definition.claims

@@ -13,6 +13,7 @@ from sdfc.scene import functions, values
 from sdfc.scene.bindings import did_you_mean
 from sdfc.scene.color import hexadecimal
 from sdfc.scene.limits import LONGEST_LOOP
+from sdfc.scene.literals import literal
 from sdfc.scene.names import Names, Rule, evaluate
 from sdfc.scene.units import UNITS, unknown_unit
 from sdfc.scene.values import ListValue, Quantity, RangeValue, Unit, Value, words
@@ -23,12 +24,16 @@ def _number(node: tree.Number, names: Names) -> Value:
     factor = UNITS.get(node.unit)
     if factor is None:
         raise unknown_unit(node)
-    value = names.context.graph.constant(node.value * factor)
-    return Quantity(value, Unit.ANGLE if node.unit else Unit.NUMBER)
+    unit = Unit.ANGLE if node.unit else Unit.NUMBER
+    number = node.value * factor
+    live = literal(node, (number,), unit, names.context)
+    return Quantity(names.context.graph.constant(number) if live is None else live, unit)
 
 
 def _color(node: tree.Color, names: Names) -> Value:
-    return Quantity(names.context.graph.constant(*hexadecimal(node)), Unit.COLOR)
+    numbers = hexadecimal(node)
+    live = literal(node, numbers, Unit.COLOR, names.context)
+    return Quantity(names.context.graph.constant(*numbers) if live is None else live, Unit.COLOR)
 
 
 def _text(node: tree.Text, names: Names) -> Value:

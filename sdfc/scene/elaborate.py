@@ -15,6 +15,7 @@ from sdfc.scene.files import Folder
 from sdfc.scene.imports import load_modules
 from sdfc.scene.library import Library
 from sdfc.scene.limits import DEEPEST_FRAMES
+from sdfc.scene.literals import NO_LITERALS, Literals
 from sdfc.scene.model import Camera, Light, Scene, Sky
 from sdfc.scene.module import FileModule
 from sdfc.scene.names import Context, Problems
@@ -24,14 +25,14 @@ from sdfc.syntax import tree
 from sdfc.syntax.parse import parse
 
 
-def elaborate(source: Source, folder: Path | None) -> Scene:
-    """The scene that a text describes; `folder` is where the files that it names are.
+def elaborate(source: Source, folder: Path | None, literals: Literals = NO_LITERALS) -> Scene:
+    """The scene that a text describes; `folder` is where the files that it names are; `literals` become live.
 
     Raises SceneError, and nothing else, for any text that is not a scene, with everything that is wrong.
     """
     with _deep():
         try:
-            return _elaborate(source, folder)
+            return _elaborate(source, folder, literals)
         except SceneError as error:
             raise SceneError(*sorted(error.diagnostics, key=lambda d: _order(d, source))) from None
         except RecursionError:
@@ -57,9 +58,9 @@ def _deep() -> Iterator[None]:
         sys.setrecursionlimit(before)
 
 
-def _elaborate(source: Source, place: Path | None) -> Scene:
+def _elaborate(source: Source, place: Path | None, literals: Literals) -> Scene:
     graph = FieldGraph()
-    context = Context(graph, ShapeGraph(), Library(graph), RULES)
+    context = Context(graph, ShapeGraph(), Library(graph), RULES, literals)
     folder = Folder(place)
     problems = Problems()
     module = load_modules(parse(source), context, folder, problems)

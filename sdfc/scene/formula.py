@@ -42,6 +42,9 @@ class Outer(Protocol):
     def names(self) -> Sequence[str]:
         """All that there is, for hints."""
 
+    def literal(self, node: tree.Number, number: float) -> Expr | None:
+        """The value of a number in the text, where it is more than a constant."""
+
     def step(self, span: Span) -> None:
         """One more round of a loop, or call: raises SceneError where there are too many."""
 
@@ -65,6 +68,9 @@ class NothingOutside:
 
     def names(self) -> Sequence[str]:
         return ()
+
+    def literal(self, node: tree.Number, number: float) -> Expr | None:
+        return None
 
     def step(self, span: Span) -> None:
         return None
@@ -170,7 +176,8 @@ def _number(node: tree.Number, scope: Scope) -> Value:
     factor = UNITS.get(node.unit)
     if factor is None:
         raise unknown_unit(node)
-    return scope.graph.constant(node.value * factor)
+    live = scope.outer.literal(node, node.value * factor)
+    return scope.graph.constant(node.value * factor) if live is None else live
 
 
 def _name(node: tree.Name, scope: Scope) -> Value:

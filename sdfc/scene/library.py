@@ -78,6 +78,9 @@ class _File:
     def names(self) -> Sequence[str]:
         return [function for file, function in _contents().functions if file == self.name]
 
+    def literal(self, node: tree.Number, number: float) -> Expr | None:
+        return None
+
     def step(self, span: Span) -> None:
         return None
 

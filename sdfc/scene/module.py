@@ -14,9 +14,10 @@ from sdfc.scene.check import has_sizes, try_out
 from sdfc.scene.define import IN_PLANE, define, in_plane
 from sdfc.scene.files import Folder, rows
 from sdfc.scene.formula import Helper
+from sdfc.scene.literals import literal
 from sdfc.scene.names import Context, Names, Problems, evaluate
 from sdfc.scene.params import declare
-from sdfc.scene.values import Quantity, Row, Value
+from sdfc.scene.values import Quantity, Row, Unit, Value
 from sdfc.shape.definition import Definition
 from sdfc.syntax import tree
 
@@ -176,6 +177,9 @@ class Outside:
 
     def names(self) -> Sequence[str]:
         return self._module.names()
+
+    def literal(self, node: tree.Number, number: float) -> Expr | None:
+        return literal(node, (number,), Unit.ANGLE if node.unit else Unit.NUMBER, self._module.context)
 
     def step(self, span: Span) -> None:
         self._module.context.budget.step(span)

@@ -13,6 +13,7 @@ from sdfc.scene.bindings import Bindings, did_you_mean
 from sdfc.scene.functions import CONSTANTS
 from sdfc.scene.library import Library
 from sdfc.scene.limits import MOST_PROBLEMS, Budget, LimitError
+from sdfc.scene.literals import NO_LITERALS, Literals
 from sdfc.scene.model import Param
 from sdfc.scene.values import Quantity, Value
 from sdfc.shape.definition import Definition
@@ -28,6 +29,7 @@ class Context:
     shapes: ShapeGraph
     library: Library
     rules: Mapping[type, Rule]
+    literals: Literals = field(default_factory=lambda: NO_LITERALS)  # those that are to be live
     budget: Budget = field(default_factory=Budget)
     params: dict[str, Param] = field(default_factory=dict)
     warnings: list[Diagnostic] = field(default_factory=list)

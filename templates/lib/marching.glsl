@@ -21,14 +21,15 @@ float parabola(float t, float r, vec2 v, float bend, float eps) {
     return max(r, clear) <= eps ? t : t + max(r, clear) * 0.9999996;
 }
 
-// v: the value, and a radius within which nothing is nearer; `span`: what is known of it over the piece of the ray that
-// is `ahead` long, which is left as long as the next look should be. The solid is looked for a length `sunk` deeper. It
-// is there where no more than eps is clear of so short a piece: the slope near by counts, not the steepest.
-float piece(float t, inout float ahead, vec2 v, vec4 span, float lipschitz, float sunk, float eps) {
-    float depth = sunk * min(lipschitz, max(-span.z, span.w));
-    float above = v.x + depth, fall = max(-span.z, 1e-30);
+// v: the value, `least` of which is the radius within which nothing is nearer; `span`: what is known of it over the piece
+// of the ray that is `ahead` long, which is left as long as the next look should be. The solid is looked for a length
+// `sunk` deeper. It is there where no more than eps is clear of so short a piece: the slope near by counts, not the
+// steepest.
+float piece(float t, inout float ahead, float v, vec4 span, float least, float sunk, float eps) {
+    float depth = sunk * max(max(-span.w, span.z), 0.0);  // it falls, or has risen, by this in the length `sunk`
+    float above = v + depth, fall = max(-span.z, 1e-30);
     bool empty = above > 0.0 && (span.x + depth > 0.0 || span.z >= 0.0);
-    float clear = max(empty ? ahead : min(ahead, max(above, 0.0) / fall), v.y + depth / lipschitz);
+    float clear = max(empty ? ahead : min(ahead, max(above, 0.0) / fall), above * least);
     float root = span.w < 0.0 ? min(ahead, max(above, 0.0) / -span.w) : ahead;
     bool there = above <= 0.0 || clear <= eps && root <= 4.0 * eps;
     float shorter = span.w < 0.0 ? root - clear : max(2.0 * clear, 0.25 * ahead);

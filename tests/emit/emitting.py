@@ -8,10 +8,11 @@ import shutil
 import subprocess
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from sdfc.api import Program
+from sdfc.api import Image, Program
 from sdfc.api.program import compile as compile_scene
 from sdfc.glsl.targets import TARGETS
 
@@ -41,6 +42,12 @@ TEXTUAL = tuple(_HEADS)
 def program(name: str) -> Program:
     """A scene of the repository, or of /work/shared's models."""
     return compile_scene(ROOT / "scenes" / name)
+
+
+def rendered(name: str, size: tuple[int, int], **asked: Any) -> Image:
+    """A picture by a device of its own, which is closed again: no other context is left to be current."""
+    with compile_scene(ROOT / "scenes" / name) as opened:
+        return opened.render(size, backend="gl", **asked)
 
 
 def cases() -> list[tuple[str, str]]:

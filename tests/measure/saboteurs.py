@@ -80,7 +80,7 @@ SABOTEURS = {
             "edge/box from (1.0, 1.0, 1.0)",
             "axis/marched along +x",
             "shell/wire*0.01*",
-            "ellipsoid/1 : 1 : 0.01 from its edge",
+            "ellipsoid/1 : 1 : 0.01*",
             "repeat/around an axis",
             "twist/bent bar, 90*",
             "detail/displaced of 0.4",
@@ -89,15 +89,15 @@ SABOTEURS = {
     "greedy": Saboteur(
         "steps by 1.9 radii, and never looks back",
         _sphere(step="1.9 * r"),
-        ("shell/*1e-05*", "far/a thin sheet*", "ellipsoid/1 : 1 : 0.0001 from its face", "flush/three tenths"),
+        ("shell/*0.0001*", "far/a thin sheet*", "ellipsoid/1 : 1 : 0.0001 from its face", "flush/three tenths"),
     ),
     "striding": Saboteur(
         "no step is shorter than a hundredth",
         _sphere(step="max(r, 0.01)"),
-        ("shell/wire*0.0001*", "far/a torus*", "detail/gyroid of 0.03", "tangent/sphere*1e-3"),
+        ("shell/plate*", "far/a torus*", "detail/gyroid of 0.03", "tangent/sphere*1e-3"),
     ),
     "past the end": Saboteur(
-        "a step that is not sound may end beyond the far plane: a miss", _PAST_THE_END, ("far/*", "nan/torus' axis*")
+        "a step that is not sound may end beyond the far plane: a miss", _PAST_THE_END, ("far/*",)
     ),
     "absolute": Saboteur(
         "near enough is a fixed length in the scene's unit",
@@ -107,7 +107,7 @@ SABOTEURS = {
     "far away": Saboteur(
         "points are reckoned from the eye, however far it is",
         _sphere(point="(o - travelled * d) + (t + travelled) * d"),
-        ("distance/seen from 1e+06", "distance/seen from 100000"),
+        ("distance/*1e+06",),
     ),
     "hasty": Saboteur(
         "gives up soon",
@@ -125,8 +125,8 @@ SABOTEURS = {
         ("start/on sphere*", "start/on box*"),
     ),
     "not a number": Saboteur(
-        "divides by how far the ray passes from the axis",
-        _sphere(radius="map(p) + 0.0 * (1.0 / length(o.xz - dot(o.xz, d.xz) * d.xz))"),
-        ("axis/*along +z", "nan/cone's axis from above", "nan/sphere's centre from above"),
+        "divides by how far the ray passes from the origin",
+        _sphere(radius="map(p) * length(normalize(o - dot(o, d) * d))"),
+        ("nan/cone's axis exactly*", "nan/sphere's centre exactly*"),
     ),
 }

@@ -204,10 +204,10 @@ def test_a_colour_is_judged_by_its_alpha(wanted: Wanted, measure: Measure, tmp_p
 def test_a_tracer_that_is_not_legal_says_so(wanted: Wanted, measure: Measure, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = entrants.asked
 
-    def refused(scene: Scene, spec: str, renderer: GlRenderer) -> tuple[Options, str]:
+    def refused(scene: Scene, spec: str, planned: entrants.Planned | None) -> tuple[Options, str]:
         if spec == "sphere":
             raise scene_error("no Lipschitz constant")
-        return asked(scene, spec, renderer)
+        return asked(scene, spec, planned)
 
     monkeypatch.setattr(entrants, "asked", refused)
     found = measure(replace(wanted, scenes=wanted.scenes[:1]))
@@ -223,10 +223,10 @@ def test_a_bug_on_one_scene_does_not_cost_the_others(
 ) -> None:
     asked = entrants.asked
 
-    def broken(scene: Scene, spec: str, renderer: GlRenderer) -> tuple[Options, str]:
+    def broken(scene: Scene, spec: str, planned: entrants.Planned | None) -> tuple[Options, str]:
         if "ball" in scene.source.name:
             raise InternalError("two proofs disagree")
-        return asked(scene, spec, renderer)
+        return asked(scene, spec, planned)
 
     monkeypatch.setattr(entrants, "asked", broken)
     found = measure(wanted)

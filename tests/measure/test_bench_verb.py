@@ -80,6 +80,17 @@ def test_a_folder_of_results_and_what_is_made_of_it(bench: Bench, gl: None, tmp_
 
 
 @pytest.mark.gpu
+def test_without_matplotlib_it_says_so_and_goes_on(
+    bench: Bench, gl: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    result = bench("ball.sdf", *SMALL, "--tolerances", "1", "-o", "one")
+    assert result.exit_code == 0
+    assert result.stderr.count("note: no plots: matplotlib is not installed") == 1
+    assert sorted(p.name for p in (tmp_path / "one").iterdir()) == ["results.json", "results.md"]
+
+
+@pytest.mark.gpu
 def test_interrupted_it_keeps_what_there_is(
     bench: Bench, gl: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,4 +1,4 @@
-"""Law: `proven` keeps its guarantee wherever it is hard to; and a tracer that does not is found out by who looks for it.
+"""Law: `proven` keeps its guarantee wherever that is hard; and a tracer that does not keep its own is found out.
 
 SDFC_FULL=1 draws every case at 48x27, in every way.
 """
@@ -112,7 +112,7 @@ def test_names_are_of_something() -> None:
     (family,) = chosen(("nan/cone's*",))
     assert {case.name.partition(" ")[0] for case in family.cases} == {"cone's"}
     assert len(chosen(("nan/cone's apex", "start", "nan"))) == 2
-    with pytest.raises(RequestError, match="no case 'twits'.*twist"):
+    with pytest.raises(RequestError, match=r"no case 'twits'.*twist"):
         chosen(("twits",))
     with pytest.raises(RequestError, match="no case 'nan/nothing'"):
         chosen(("nan/nothing",))

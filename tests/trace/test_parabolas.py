@@ -7,12 +7,14 @@ import pytest
 from truth import Tracing, certified, compiled_text, every, footprint, tolerance, verdict, wrong
 
 from sdfc.api.request import View
-from sdfc.facts.bend import Bends
+from sdfc.facts.box import Box
+from sdfc.facts.rule import Rule, Rules
 from sdfc.pipeline import Compiled
 from sdfc.plan.steps import Ball, leaves_of
 from sdfc.reference.formulas import Formulas
 from sdfc.reference.rays import Rays
 from sdfc.reference.trace import StepTracer
+from sdfc.shape.graph import Apply
 from sdfc.shape.lower import FAR
 
 pytestmark = pytest.mark.gpu
@@ -42,12 +44,16 @@ DO_NOT_PAY = ("blobs", "waved and turned")
 @pytest.fixture
 def everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
     """Parabolas wherever there is a bound, whether they pay or not."""
-    monkeypatch.setattr(Bends, "worthwhile", lambda self, shape, region, lipschitz: self.bound(shape, region))
+
+    def best(self: Rules, shape: Apply, region: Box, lipschitz: float, inside: bool) -> Rule:
+        return Rule(self.bends.bound(shape, region) if inside else None)
+
+    monkeypatch.setattr(Rules, "best", best)
 
 
 @pytest.fixture
 def balls_only(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
-    monkeypatch.setattr(Bends, "worthwhile", lambda self, shape, region, lipschitz: None)
+    monkeypatch.setattr(Rules, "best", lambda self, *asked: Rule())
     return monkeypatch
 
 

@@ -113,8 +113,11 @@ def assert_same_sign(compiled: Compiled, p: Array) -> None:
     """The scene before and after all passes, at every point p (3, n) that is not at its surface."""
     scene, frame = compiled.scene, compiled.frame
     own = (p - np.array(frame.centre)[:, None]) / frame.radius
-    (as_written,) = Evaluator([lower(scene.root, scene.values.input("p"))])({"p": p}, {})
-    (normal,) = Evaluator([lower(compiled.shape, scene.values.input("p"))])({"p": own}, {})
+    at = scene.values.input("p")
+    as_written, normal = (  # of an empty scene it is one number
+        np.broadcast_to(Evaluator([lower(shape, at)])({"p": points}, {})[0], p.shape[1:])
+        for shape, points in ((scene.root, p), (compiled.shape, own))
+    )
     clear = np.minimum(np.abs(as_written), np.abs(normal)) > 1e-9
     np.testing.assert_array_equal((as_written < 0)[clear], (normal < 0)[clear])
 

@@ -15,7 +15,7 @@ from sdfc.api.renderer import GlRenderer
 from sdfc.api.request import View
 from sdfc.measure.bench import contest
 from sdfc.measure.bench.answers import Answers, Array, RayDrawing, Size, covered
-from sdfc.measure.bench.entrants import Drawing, Entrant, Floor, Illegal, Reply, Traced, entrant
+from sdfc.measure.bench.entrants import Drawing, Entrant, Floor, Illegal, Planned, Reply, Traced, entrant
 from sdfc.measure.bench.foreign import Foreign, foreign
 from sdfc.measure.bench.judged import Court, court
 from sdfc.measure.bench.machine import now
@@ -41,6 +41,7 @@ class Competition:
     size: Size
     renderer: GlRenderer
     kept: Store
+    planned: Planned | None = None
     _competitors: dict[tuple[str, int | None], Legal | Illegal] = field(default_factory=dict)
     _starts: dict[str, contest.Start] = field(default_factory=dict)
     _courts: dict[str, Court] = field(default_factory=dict)
@@ -84,7 +85,7 @@ class Competition:
         if kind == FOREIGN:
             path = next(p for p in self.wanted.foreign if p.name == file)
             return foreign(name, path, self.base, self.renderer.device)
-        return entrant(self.scene, name, budget, self.renderer)
+        return entrant(self.scene, name, budget, self.renderer, self.planned)
 
     def _key(self, group: Group, text: str) -> str:
         """A hash of all that a cell's numbers depend on."""

@@ -8,12 +8,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeAlias, TypeVar
 
 from sdfc import pipeline
 from sdfc.api.renderer import GlRenderer, Shot
-from sdfc.api.request import View, checked_names, checked_tracer
-from sdfc.diagnostics import SceneError
+from sdfc.api.request import AUTO, View, checked_names, checked_tracer
+from sdfc.diagnostics import InternalError, SceneError
 from sdfc.gpu.device import Device
 from sdfc.gpu.frame import Frame
 from sdfc.gpu.program import FragmentProgram
@@ -24,10 +24,10 @@ from sdfc.scene.model import Scene
 ENTRY = "depth"  # primary rays and nothing else: what every tracer is compared by
 
 
-AUTO = "auto"  # what the planner chooses
 EXTRAS: dict[str, dict[str, Any]] = {"prepass": {"prepass": True}, "all": {"rays": "all"}}
 _EXTRA = re.compile(r"\+(?=[a-z])")  # not that of 1e+09
 
+Planned: TypeAlias = tuple[Options, str] | SceneError  # the planner's choice and its reason, or why there is none
 Result = TypeVar("Result")
 
 
@@ -144,10 +144,12 @@ def coarser(uniforms: Mapping[str, Any], tolerance: float) -> dict[str, Any]:
     return {**uniforms, "pixel": (size * tolerance, growth * tolerance, perspective)}
 
 
-def entrant(scene: Scene, spec: str, budget: int | None, renderer: GlRenderer) -> Traced | Illegal:
+def entrant(
+    scene: Scene, spec: str, budget: int | None, renderer: GlRenderer, planned: Planned | None = None
+) -> Traced | Illegal:
     """The scene compiled for a tracer, or for what the planner chooses (`auto`)."""
     try:
-        options, note = asked(scene, spec, renderer)
+        options, note = asked(scene, spec, planned)
         wanted = replace(options, most_steps=budget)
         compiled, proving = timed(lambda: pipeline.compile_scene(scene, wanted))
         text, emitting = timed(lambda: "".join(compiled.glsl(entry) for entry in _entries(compiled)))
@@ -156,14 +158,28 @@ def entrant(scene: Scene, spec: str, budget: int | None, renderer: GlRenderer) -
     return Traced(spec, compiled, renderer, text, {"compile": proving, "emit": emitting}, note)
 
 
-def asked(scene: Scene, spec: str, renderer: GlRenderer) -> tuple[Options, str]:
+def plan(scene: Scene, renderer: GlRenderer) -> Planned:
+    """What the planner chooses: on a device of its own, lest its pilots have compiled what is to be timed."""
+    from sdfc.api.choose import decide, options_of
+
+    try:
+        decision = decide(scene, renderer, pilot=True)
+    except SceneError as error:
+        return error
+    return options_of(decision.chosen), f"{decision.chosen.name}: {decision.reason}"
+
+
+def asked(scene: Scene, spec: str, planned: Planned | None) -> tuple[Options, str]:
     """The compiler's options for a spec (`relaxed:omega=1.4`, `sphere+prepass`, `auto`), and a remark."""
     name, *extras = _EXTRA.split(spec)
     if name == AUTO:
-        from sdfc.api.choose import decide, options_of
-
-        decision = decide(scene, renderer, pilot=True)
-        return options_of(decision.chosen), f"{decision.chosen.name}: {decision.reason}"
+        match planned:
+            case SceneError():
+                raise planned
+            case None:
+                raise InternalError("nothing was planned")
+            case choice:
+                return choice
     options = Options(tracer=name)
     for extra in extras:
         options = replace(options, **EXTRAS[extra])

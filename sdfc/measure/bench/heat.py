@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sdfc.api.program import DEFAULT_TRACER
 from sdfc.api.renderer import Shot
 from sdfc.api.request import View
 from sdfc.measure.bench import plots
 from sdfc.measure.bench.competition import Competition
 from sdfc.measure.bench.entrants import Illegal, Traced
-from sdfc.measure.bench.plan import REFERENCE
+from sdfc.measure.bench.plan import OWN, REFERENCE
 from sdfc.shade.present import present
 
 SIZE = (320, 180)  # of each of the pictures
@@ -24,7 +23,7 @@ SIZE = (320, 180)  # of each of the pictures
 def draw(competition: Competition, folder: Path, note: Callable[[str], None]) -> None:
     """STEM.steps.png in the folder, if it is not there yet: the picture, and the steps of two tracers on one scale."""
     path = folder / f"{Path(competition.name).stem}.steps.png"
-    names = [n for n in (REFERENCE, DEFAULT_TRACER) if n in competition.wanted.tracers]
+    names = [n for n in (REFERENCE, OWN) if n in competition.wanted.tracers]
     if path.exists() or not names or not plots.are_there(note):
         return
     maps = {name: found for name in names if (found := _steps(competition, name)) is not None}
@@ -47,7 +46,7 @@ def _steps(competition: Competition, name: str) -> NDArray[np.float64] | None:
 def _picture(competition: Competition) -> NDArray[np.uint8]:
     """As a screen shows it."""
     compiled = competition.base
-    match competition.competitor(DEFAULT_TRACER):
+    match competition.competitor(OWN):
         case Traced() as legal:
             compiled = legal.compiled
         case _:

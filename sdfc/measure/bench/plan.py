@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from math import inf
 from pathlib import Path
 
-from sdfc.api.request import RequestError
+from sdfc.api.request import AUTO, RequestError
 from sdfc.measure.bench.answers import Size
-from sdfc.measure.bench.entrants import AUTO
 from sdfc.measure.bench.record import Cell
 from sdfc.tracers import TRACERS
 
 FLOOR = "floor"  # rays that are made, and not traced
 FOREIGN = "foreign"  # `foreign:FILE` is somebody's own shader
+OWN = "proven"  # sdfc's own tracer
 REFERENCE = "sphere"  # what ratios are to
 TOLERANCES = (1.0, 8.0, 64.0)  # times what sdfc asks for; 64: half a pixel
 BUDGETS = (8, 16, 32, 64, 128, 256)  # Balint & Kiglics 2021, figure 6
@@ -95,6 +95,10 @@ class Wanted:
                 few = tuple(name for name in self.tracers if name != AUTO)
                 made += [Group(scene, size, few, 1.0, budget) for budget in self.budgets]
         return made
+
+    def has_choice(self, scene: str) -> bool:
+        """Whether the planner's choice is among what is measured."""
+        return any(AUTO in g.names for size in self.sizes_of(scene) for g in self.groups(scene, size))
 
     @property
     def cells(self) -> int:

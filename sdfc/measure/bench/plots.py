@@ -19,17 +19,14 @@ from sdfc.measure.bench.store import Store, ordered
 Key = TypeVar("Key", bound=Hashable)
 
 ADVICE = "no plots: matplotlib is not installed (pip install 'sdfc[plots]')"
-_said: set[str] = set()
 
 
 def are_there(note: Callable[[str], None]) -> bool:
-    """Whether plots can be drawn; where not, it is said once."""
-    if importlib.util.find_spec("matplotlib") is not None:
-        return True
-    if ADVICE not in _said:
-        _said.add(ADVICE)
+    """Whether plots can be drawn; where not, it is said."""
+    found = importlib.util.find_spec("matplotlib") is not None
+    if not found:
         note(ADVICE)
-    return False
+    return found
 
 
 def heat(path: Path, title: str, picture: NDArray[np.uint8], maps: Mapping[str, NDArray[np.float64]]) -> None:

@@ -6,9 +6,8 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from sdfc.api.program import DEFAULT_TRACER
-from sdfc.measure.bench.entrants import AUTO
-from sdfc.measure.bench.plan import FLOOR, FOREIGN
+from sdfc.api.request import AUTO
+from sdfc.measure.bench.plan import FLOOR, FOREIGN, OWN
 from sdfc.measure.bench.record import Cell, Record
 from sdfc.measure.bench.store import Store, ordered
 
@@ -66,7 +65,7 @@ class Results:
         self.rows = [replace(row, name=row.scene) for row in rows] if one_size else rows
         names = dict.fromkeys(r.cell.tracer for r in records)
         self.tracers = tuple(n for n in names if ":" not in n and n != FLOOR and not n.startswith(FOREIGN))
-        self.ours = AUTO if AUTO in self.tracers else DEFAULT_TRACER
+        self.ours = AUTO if AUTO in self.tracers else OWN
 
 
 def speed_up(row: Row, other: Record | None, ours: str) -> float:

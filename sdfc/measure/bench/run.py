@@ -13,6 +13,7 @@ from sdfc.api.source import from_path
 from sdfc.diagnostics import InternalError
 from sdfc.measure.bench import heat, machine, store
 from sdfc.measure.bench.competition import Competition
+from sdfc.measure.bench.entrants import plan
 from sdfc.measure.bench.plan import Wanted
 from sdfc.measure.bench.record import Cell, Record
 from sdfc.measure.bench.store import Store
@@ -67,10 +68,14 @@ def bench(wanted: Wanted, folder: Path | None, progress: Progress, note: Note) -
 
     scenes = {path: _loaded(path) for path in wanted.scenes}  # what is wrong with one is said before all is measured
     for path, scene in scenes.items():
+        planned = None
         for size in wanted.sizes_of(path.name):
             try:
+                if planned is None and wanted.has_choice(path.name):
+                    with opened() as renderer:
+                        planned = plan(scene, renderer)
                 with opened() as renderer:
-                    competition = Competition(wanted, path.name, scene, size, renderer, kept)
+                    competition = Competition(wanted, path.name, scene, size, renderer, kept, planned)
                     competition.hold(finished)
                     if folder is not None:
                         heat.draw(competition, folder, note)

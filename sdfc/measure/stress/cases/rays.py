@@ -134,6 +134,9 @@ def _cornered(name: str, solid: str, corner: Point) -> tuple[Case, ...]:
             (f"{direction}", look(_plus(corner, direction, 3.0), corner, 0.4)),
             (f"{direction} in parallel", parallel(_plus(corner, direction, 3.0), corner, 0.02)),
         )
+    ) + tuple(
+        Case(name=f"{name} exactly along {axis}", text=text, view=needle(corner, way), size=(1, 1))
+        for axis, way in _AXES.items()
     )
 
 

@@ -1,0 +1,121 @@
+"""The loop of `sdfc watch`: a save, a look at the files, an update; and whatever goes wrong, the next save."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from sdfc.api.request import RequestError
+from sdfc.api.source import STDIN, Kind
+from sdfc.diagnostics import SceneError
+from sdfc.live.saves import Saves
+from sdfc.live.session import Session, Update
+from sdfc.live.snapshot import Snapshot, take
+
+_LOOK = 1.0  # seconds between looks where no event comes: some file systems send none
+_SETTLING = 0.1  # seconds that a file may be missing or half written before that is an error
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """A save whose picture could not be made; the last one stays."""
+
+    error: Exception
+
+
+Stamp = tuple[tuple[int, int, int] | None, ...]
+
+
+def watch(scene: Path, kind: Kind | None, session: Session) -> Iterator[Update | Failure]:
+    """An update for every save, the first picture first, for ever. Raises RequestError where there is no scene."""
+    if str(scene) == STDIN:
+        raise RequestError("standard input cannot be watched: give the scene's file")
+    seen: Snapshot | Exception = _looked(scene, kind)
+    if isinstance(seen, RequestError):
+        raise seen
+    with Saves() as saves:
+        paths = _watched(saves, scene, seen, ())
+        stamp = _stamp(paths)
+        yield from _told(scene, kind, session, seen)
+        while True:
+            happened = saves.wait(_LOOK)
+            if not happened and _stamp(paths) == stamp:
+                continue
+            stamp = _stamp(paths)  # before the look: what is saved during it is seen by the next one
+            now = _settled(scene, kind, _looked(scene, kind))
+            paths = _watched(saves, scene, now, paths)
+            if _is_same(seen, now):
+                continue
+            seen = now
+            yield from _told(scene, kind, session, seen)
+
+
+def _looked(scene: Path, kind: Kind | None) -> Snapshot | Exception:
+    try:
+        return take(scene, kind)
+    except (RequestError, SceneError) as error:
+        return error
+
+
+def _settled(scene: Path, kind: Kind | None, seen: Snapshot | Exception) -> Snapshot | Exception:
+    """The look, or one a little later where the scene's file was not there: an editor is replacing it."""
+    until = time.monotonic() + _SETTLING
+    while isinstance(seen, Exception) and time.monotonic() < until:
+        time.sleep(_SETTLING / 5)
+        seen = _looked(scene, kind)
+    return seen
+
+
+def _told(scene: Path, kind: Kind | None, session: Session, seen: Snapshot | Exception) -> Iterator[Update | Failure]:
+    """The update for what was seen. Nothing where it is wrong and already otherwise: it was half written."""
+    try:
+        if isinstance(seen, Exception):
+            raise seen
+        update = session.update(seen)
+        if not _is_read_alike(seen, _looked(scene, kind)):
+            session.distrust()
+        yield update
+    except SceneError as error:
+        time.sleep(_SETTLING)
+        if _is_same(seen, _looked(scene, kind)):
+            yield Failure(error)
+    except Exception as error:  # a device, a full disk, a bug in sdfc: none of them ends the watch
+        yield Failure(error)
+
+
+def _is_read_alike(before: Snapshot, now: Snapshot | Exception) -> bool:
+    """Whether the files that the compiler reads itself, imports and tables, were still those that were looked at."""
+    own = before.given.source.name
+    others = {name: content for name, content in before.contents.items() if name != own}
+    return isinstance(now, Snapshot) and all(now.contents.get(name) == content for name, content in others.items())
+
+
+def _is_same(before: Snapshot | Exception, now: Snapshot | Exception) -> bool:
+    if isinstance(before, Snapshot) and isinstance(now, Snapshot):
+        return before.contents == now.contents
+    return str(before) == str(now) if isinstance(before, Exception) and isinstance(now, Exception) else False
+
+
+def _watched(saves: Saves, scene: Path, seen: Snapshot | Exception, before: tuple[Path, ...]) -> tuple[Path, ...]:
+    """Watch where the scene's files are (while it cannot be read: where they were); returns what is looked at."""
+    if isinstance(seen, Snapshot):
+        saves.look_at(seen.folders)
+        return seen.looked_at
+    paths = before or (scene.absolute(),)
+    saves.look_at({path.parent for path in paths})
+    return paths
+
+
+def _stamp(paths: tuple[Path, ...]) -> Stamp:
+    return tuple(_state(path) for path in paths)
+
+
+def _state(path: Path) -> tuple[int, int, int] | None:
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
