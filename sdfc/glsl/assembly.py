@@ -51,7 +51,7 @@ _COMMENT = re.compile(r"//[^\n]*")
 @cache
 def environment() -> Environment:
     """The one Jinja environment."""
-    return Environment(
+    made = Environment(
         loader=PackageLoader("sdfc.templates", "."),
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -59,6 +59,8 @@ def environment() -> Environment:
         keep_trailing_newline=True,
         autoescape=False,
     )
+    made.filters["in_template_literal"] = lambda text: re.sub(r"[\\`$]", r"\\\g<0>", text)  # of JavaScript
+    return made
 
 
 def assemble(graph: FieldGraph, plan: Plan, setting: Setting, entry: str, stage: str) -> str:

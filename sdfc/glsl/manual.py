@@ -20,13 +20,14 @@ def header(brief: Brief, target: Target) -> list[str]:
 def _provided(brief: Brief, target: Target) -> list[str]:
     p = brief.prefix
     numbered = ", ".join(f"{i} {name}" for i, name in enumerate(brief.materials))
-    lines = [
-        "Provides",
-        f"  float {p}_sdf(vec3 p)                 at most the distance to the surface, below 0 inside",
-        f"  vec3 {p}_gradient(vec3 p)             its gradient: the normal, on the surface",
-        f"  int {p}_material(vec3 p)              {numbered}",
-        f"  {p}_Properties {p}_properties(vec3 p)  color (linear), metallic, roughness, emission, ...",
+    functions = [
+        (f"float {p}_sdf(vec3 p)", "at most the distance to the surface, below 0 inside"),
+        (f"vec3 {p}_gradient(vec3 p)", "its gradient: the normal, on the surface"),
+        (f"int {p}_material(vec3 p)", numbered),
+        (f"{p}_Properties {p}_properties(vec3 p)", "color (linear), metallic, roughness, emission, ..."),
     ]
+    width = max(len(heading) for heading, _ in functions)
+    lines = ["Provides", *(f"  {heading:{width}}  {words}" for heading, words in functions)]
     if brief.part == "tracer":
         lines += [
             f"  {p}_hit {p}_trace(vec3 origin, vec3 direction, float tmin, float tmax)",

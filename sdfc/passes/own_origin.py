@@ -41,7 +41,7 @@ def frame_of(root: Shape, bounds: Bounds) -> Frame:
 
 def is_plain(frame: Frame) -> bool:
     """Whether float32 has digits enough for the scene where it is: of middling size, and not far off its origin."""
-    return 0.01 <= frame.radius <= 100.0 and math.hypot(*frame.centre) <= 2.0 * frame.radius
+    return 0.01 <= frame.radius <= 1000.0 and math.hypot(*frame.centre) <= 2.0 * frame.radius
 
 
 def own_origin(root: Shape, graph: ShapeGraph, values: FieldGraph, frame: Frame) -> Shape:

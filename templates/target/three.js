@@ -28,7 +28,7 @@ void main() {
 `;
 
 const fragmentShader = /* glsl */ `
-{{ text }}`;
+{{ text | in_template_literal }}`;
 
 export const material = new ShaderMaterial({ glslVersion: GLSL3, side: BackSide, uniforms, vertexShader, fragmentShader });
 

@@ -6,4 +6,4 @@
 
 // To be put into a shader of yours (GLSL3, or an onBeforeCompile), in front of what calls it.
 export const glsl = /* glsl */ `
-{{ text }}`;
+{{ text | in_template_literal }}`;

@@ -101,7 +101,7 @@ def drawn(folder: Path, files: Mapping[str, str], size: tuple[int, int]) -> np.n
     heard, done = {}, threading.Event()
 
     class Handler(SimpleHTTPRequestHandler):
-        def do_POST(self) -> None:  # noqa: N802
+        def do_POST(self) -> None:
             heard.update(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))
             self.send_response(204)
             self.end_headers()

@@ -90,14 +90,12 @@ def quoted(module: str, name: str) -> str:
     """The template literal of that name in an ES module."""
     found = re.search(rf"const {name} = /\* glsl \*/ `\n(.*?)`;", module, re.DOTALL)
     assert found, module[:500]
-    return found[1]
+    return re.sub(r"\\([\\`$])", r"\1", found[1])
 
 
 def three_stages(module: str) -> dict[str, str]:
     """The stages of a three.js module, with what three.js puts in front of them."""
-    vertex = (
-        "uniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nlayout(location = 0) in vec3 position;\n"
-    )
+    vertex = "uniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nlayout(location = 0) in vec3 position;\n"
     return {
         "vertex": _HEADS["three"] + vertex + quoted(module, "vertexShader"),
         "fragment": _HEADS["three"] + quoted(module, "fragmentShader"),
@@ -122,7 +120,9 @@ def assert_valid(texts: dict[str, str], target: str, folder: Path) -> None:
     commands = [[validator, *texts]]
     if target == "vulkan":
         checker = tool("spirv-val", "spirv-tools")
-        commands = [c for name in texts for c in ([validator, "-V", name, "-o", f"{name}.spv"], [checker, f"{name}.spv"])]
+        commands = [
+            c for name in texts for c in ([validator, "-V", name, "-o", f"{name}.spv"], [checker, f"{name}.spv"])
+        ]
     for command in commands:
         run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         assert run.returncode == 0, f"{' '.join(command)}\n{run.stdout[-3000:]}{run.stderr}"

@@ -23,9 +23,7 @@ class FieldTruth:
                   for p in compiled.scene.params}  # fmt: skip
         self._slopes = compiled.plan.slopes
         self._root = compiled.plan.root
-        self._formulas = Formulas(
-            compiled.scene.values, params, compiled.plan.materials, compiled.setting.unpainted
-        )
+        self._formulas = Formulas(compiled.scene.values, params, compiled.plan.materials, compiled.setting.unpainted)
 
     def __call__(self, p: Array) -> Array:
         """(n,) for p (3, n)."""

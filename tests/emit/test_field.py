@@ -119,7 +119,8 @@ def test_gradients_are_those_of_the_field(scene: str, gl: moderngl.Context, valu
     x = prefix_of(scene)
     steps = ", ".join(f"{x}_sdf(p + {step} * vec3({a}))" for a in ("1, 0, 0", "0, 1, 0", "0, 0, 1"))
     back = ", ".join(f"{x}_sdf(p - {step} * vec3({a}))" for a in ("1, 0, 0", "0, 1, 0", "0, 0, 1"))
-    body = f"vec3 g = (vec3({steps}) - vec3({back})) / {2 * step}; made[at] = g.x; made[at + 1u] = g.y; made[at + 2u] = g.z;"
+    body = f"vec3 g = (vec3({steps}) - vec3({back})) / {2 * step};"
+    body += " made[at] = g.x; made[at + 1u] = g.y; made[at + 2u] = g.z;"
     measured = run(gl, text, body, points, 3)
     off = np.linalg.norm(measured - made[1:4], axis=0)
     assert np.median(off) < 2e-3
@@ -147,7 +148,9 @@ def test_tracers_find_what_the_renderer_finds(scene: str, gl: moderngl.Context) 
     uniforms = compiled.uniforms(View(), {}, size)
     eye, x, y, ahead = (np.array(uniforms[n]) for n in ("eye", "axis_x", "axis_y", "axis_z"))
     flat = float(np.array(uniforms["pixel"])[2])
-    columns, rows = np.meshgrid((np.arange(size[0]) + 0.5) / size[0] * 2 - 1, 1 - (np.arange(size[1]) + 0.5) / size[1] * 2)
+    columns, rows = np.meshgrid(
+        (np.arange(size[0]) + 0.5) / size[0] * 2 - 1, 1 - (np.arange(size[1]) + 0.5) / size[1] * 2
+    )
     across = columns.reshape(1, -1) * x[:, None] + rows.reshape(1, -1) * y[:, None]
     frame = compiled.frame
     origin = (eye[:, None] + (1.0 - flat) * across) * frame.radius + np.array(frame.centre)[:, None]

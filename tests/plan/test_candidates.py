@@ -104,7 +104,7 @@ def test_close_predictions_are_decided_by_a_pilot_that_is_remembered(
 ) -> None:
     decision = choose.decide(scene(SOFT), renderer, pilot=True)
     assert len(decision.pilot) > 1 and decision.chosen.name in decision.pilot
-    assert decision.pilot[decision.chosen.name] == min(decision.pilot.values())
+    assert decision.pilot[decision.chosen.name] <= 1.1 * min(decision.pilot.values())
     monkeypatch.setattr(choose, "_timed", lambda _: pytest.fail("drawn again"))
     monkeypatch.setattr("sdfc.gpu.calibrate.calibrate", lambda *_: pytest.fail("measured again"))
     again = choose.decide(scene(SOFT), renderer, pilot=False)
