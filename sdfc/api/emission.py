@@ -79,7 +79,7 @@ def files_of(
 
     checked_names("target", (target,), tuple(TARGETS))
     row = TARGETS[target]
-    if not row.is_pair or stage is not None:
+    if not row.is_pair or stage is not None or asked.get("part") in row.refused:
         text = program.glsl(target, stage, **asked)
         return {output: (stage or row.stages[0], text)}
     if output is None:

@@ -185,7 +185,7 @@ class Assembly:
             "sky": writer.sky(self._setting.sky),
             "lights": lights,
             "suns": suns,
-            "occlusion_heights": f"vec4({', '.join(map(literal, OCCLUSION_HEIGHTS))})",
+            "occlusion_heights": f"vec4({', '.join(literal(h * self._setting.reach) for h in OCCLUSION_HEIGHTS)})",
             "transmission": transmission,
         }
 

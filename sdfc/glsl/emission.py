@@ -181,7 +181,7 @@ class _Emission(Assembly):
         stem = self._order.prefix
         words = frozenset(word for item in items for word in item.words)
         fresh = Names(words - set(globals_of(items)))
-        names = [n for n in globals_of(items) if n not in _ENTRY_POINTS and not n.startswith(f"{stem}_")]
+        names = [n for n in globals_of(items) if n not in _ENTRY_POINTS]
         public = set(PUBLIC[self._part])
         ordered = [*(n for n in names if n in public), *(n for n in names if n not in public)]
         return {name: fresh.fresh(f"{stem}_{self._short(name)}") for name in ordered}

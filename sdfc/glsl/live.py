@@ -15,7 +15,7 @@ class Live:
     """Names for expressions over params alone. The params themselves are globals too, copied from their uniforms."""
 
     def __init__(self, hoists: bool = True) -> None:
-        self._hoists = hoists  # not where there is no main to begin with: they stay where they are used
+        self.hoists = hoists  # not where there is no main to begin with: they stay where they are used
         self._names: dict[int, str] = {}
         self._kind: dict[int, bool] = {}
         self.values: list[tuple[str, Expr]] = []
@@ -24,7 +24,7 @@ class Live:
         """The global that holds `expr`, or None where it depends on more than params, or on none."""
         if expr.op is Op.INPUT and expr.value in _CONSTANTS:
             return str(expr.value)
-        if not self._hoists or expr.op in (Op.CONST, Op.INPUT, Op.PARAM):
+        if not self.hoists or expr.op in (Op.CONST, Op.INPUT, Op.PARAM):
             return None
         if not self._is_live(expr) or not self._is_costly(expr):
             return None

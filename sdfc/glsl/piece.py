@@ -8,6 +8,7 @@ from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Functions, Role
 from sdfc.plan.steps import Ball
 
+
 def piece_next(
     graph: FieldGraph, functions: Functions, body: Body, step: Ball, direction: Expr, box: str, cut: bool
 ) -> str:

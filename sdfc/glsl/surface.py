@@ -78,7 +78,11 @@ class SurfaceWriter:
         self._names = {id(m): functions.names.fresh(f"{m.name}_material") for m in materials}
         self._painted = False
         self._declared: set[str] = set()
-        self._varying = [p for p in PROPERTIES if len({_property(m, p).id for m in materials}) > 1]
+        self._varying = [
+            p
+            for p in PROPERTIES
+            if len({_property(m, p).id for m in materials}) > 1 or self._is_computed(_property(materials[0], p))
+        ]
         self._p, self._before = graph.input("p"), graph.input("before")
         self._count = 0
         self._blends = False
@@ -148,6 +152,14 @@ class SurfaceWriter:
             "}",
             "",
         ]
+
+    def _is_computed(self, value: Expr) -> bool:
+        """Whether its text takes statements, where there is no main that could begin with them."""
+        if self._live.hoists:
+            return False
+        body = Body(self._live)
+        body.text(value)
+        return bool(body.lines)
 
     def _properties(self) -> dict[str, str]:
         body = Body(self._live)

@@ -13,6 +13,7 @@ from sdfc.field.graph import params_of
 from sdfc.live import numbers
 from sdfc.live.numbers import Live
 from sdfc.live.snapshot import Key, Snapshot
+from sdfc.passes.own_origin import Frame
 from sdfc.pipeline import Compiled, Options
 from sdfc.plan.setting import setting_of
 from sdfc.scene.literals import NO_LITERALS, LiveLiteral
@@ -123,8 +124,10 @@ def _aims(scene: Scene) -> frozenset[str]:
 
 def _compiled(snapshot: Snapshot, scene: Scene, options: Options, live: Live, baked: Scene) -> Built:
     compiled = pipeline.compile_scene(scene, options)
-    if live and scene.camera is None:
+    if live:
         compiled = aimed(compiled, baked, options)
+        radius = _frame(baked, options).radius
+        compiled = replace(compiled, setting=replace(compiled.setting, reach=radius / compiled.frame.radius))
     code = _COMMENT.sub("", compiled.glsl(ENTRY))
     return Built(snapshot, compiled, live, _declared(snapshot, scene), frozenset(), code)
 
@@ -133,10 +136,15 @@ def aimed(compiled: Compiled, baked: Scene, options: Options) -> Compiled:
     """The compiled scene seen as `baked`, the same scene without live literals, is seen: their ranges frame nothing."""
     camera = baked.camera
     if camera is None:
-        _, workshop = pipeline.normalise(baked, after="own_origin", own_unit=options.own_unit)
-        assert workshop.frame is not None
-        camera = setting_of(baked, workshop.frame).camera
+        camera = setting_of(baked, _frame(baked, options)).camera
     return replace(compiled, setting=replace(compiled.setting, camera=camera))
+
+
+def _frame(scene: Scene, options: Options) -> Frame:
+    """The scene's origin and unit."""
+    _, workshop = pipeline.normalise(scene, after="own_origin", own_unit=options.own_unit)
+    assert workshop.frame is not None
+    return workshop.frame
 
 
 def _declared(snapshot: Snapshot, scene: Scene) -> dict[Key, LiveLiteral]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from sdfc import pipeline
 from sdfc.api.request import View
+from sdfc.field.derivative import gradient
 from sdfc.field.numeric import Evaluator
 from sdfc.measure.picture import Picture
 from sdfc.pipeline import Compiled
@@ -169,10 +170,25 @@ def near_enough(compiled: Compiled, picture: Picture, cone: tuple[float, float])
 def tolerance(compiled: Compiled, picture: Picture, cone: tuple[float, float]) -> float:
     """Twice what the tracer takes for touching at the far side of the scene (ALGORITHMS: contested is within 2 eps).
 
-    As a value of the field: one that is no distance, with Lipschitz constant L, may be L eps at a distance of eps.
+    As a value of the field: one that is no distance, with Lipschitz constant L, may be L eps at a distance of eps. What
+    is not stepped by balls alone goes by the slope near by: there it is that at the hits, so that |dt| is judged.
     """
-    slope = max([1.0, *(leaf.lipschitz for leaf in leaves_of(compiled.plan.root) if isinstance(leaf, Ball))])
-    return 2.0 * slope * near_enough(compiled, picture, cone)
+    balls = [leaf for leaf in leaves_of(compiled.plan.root) if isinstance(leaf, Ball)]
+    slopes = [leaf.lipschitz for leaf in balls if leaf.bend is None and not leaf.ahead]
+    slopes.append(1.0 if len(slopes) == len(balls) else _steepness(compiled, picture))
+    return 2.0 * max(slopes) * near_enough(compiled, picture, cone)
+
+
+def _steepness(compiled: Compiled, picture: Picture) -> float:
+    """How steep the scene's field is at the picture's hits, but for the steepest; 1 where nothing is hit."""
+    if not picture.hit.any():
+        return 1.0
+    params = {p.name: p.default for p in compiled.scene.params}
+    with pipeline.deep_recursion():
+        p = compiled.scene.values.input("p")
+        (slope,) = Evaluator([gradient(lower(compiled.shape, p), p)])({"p": picture.points}, params)
+    steep = np.linalg.norm(np.broadcast_to(slope, (3, int(picture.hit.sum()))), axis=0)
+    return float(np.quantile(steep[np.isfinite(steep)], 0.95)) if np.isfinite(steep).any() else 1.0
 
 
 def certified(compiled: Compiled, picture: Picture, near: float, end: float | None = None) -> Certificate:

@@ -29,6 +29,7 @@ class Setting:
     params: Sequence[Param]
     title: str
     unpainted: Material
+    reach: float = 1.0  # of ambient occlusion, in the scene's own unit: 1 where that is the radius of what is there
 
 
 def setting_of(scene: Scene, frame: Frame) -> Setting:

@@ -127,9 +127,10 @@ class Shader:
         return _column(toward), _column(self._formulas.constant(sun.color) * self._formulas.constant(sun.intensity))
 
     def _openness(self, hits: Hits, fold: SurfaceFold) -> Array:
-        reach = 1.5 * max(OCCLUSION_HEIGHTS)
-        distances = np.stack([fold.distance(hits.p + h * hits.normal, reach) for h in OCCLUSION_HEIGHTS])
-        return self._call("occlusion_weight", distances=distances, heights=_column(np.array(OCCLUSION_HEIGHTS)))
+        heights = [h * self._setting.reach for h in OCCLUSION_HEIGHTS]
+        reach = 1.5 * max(heights)
+        distances = np.stack([fold.distance(hits.p + h * hits.normal, reach) for h in heights])
+        return self._call("occlusion_weight", distances=distances, heights=_column(np.array(heights)))
 
     def _call(self, name: str, **arguments: Array) -> Array:
         return self._formulas.call(self._functions[name], arguments)

@@ -68,7 +68,7 @@ def test_csg_by_ending_by_option_and_not_by_chance(run: Run, tmp_path: Path) -> 
     assert run("check", "-", stdin=CSG).exit_code == 1
 
 
-@pytest.mark.parametrize("kind", ["primitives", "operations", "tracers"])
+@pytest.mark.parametrize("kind", ["primitives", "operations", "tracers", "targets"])
 def test_list_describes_every_row(run: Run, kind: str) -> None:
     told = json.loads(run("list", kind, "--json").stdout)
     assert list(told) == ["ok", kind]

@@ -149,3 +149,16 @@ class TestGodot:
             if "start_state" not in text:
                 main = f"out vec4 c;\nvoid main() {{ c = vec4({call.replace('(s, ', '(')}); }}\n"
             assert_valid({f"{p}.frag": f"#version 330 core\n{text}{main}"}, "glsl330", tmp_path)
+
+
+def test_a_material_may_be_computed_from_params(tmp_path: Path) -> None:
+    """There is no main to begin with what takes statements."""
+    wave = " + ".join(f"sin({k} * tone) * cos({k + 1} * tone)" for k in range(1, 9))
+    text = "param tone = 0.3 in 0.0..1.0\nparam hue = #ff8000\nmaterial m { color: mix(hue, #0000ff, tone), "
+    text += f"roughness: clamp({wave}, 0, 1) }}\nscene {{ sphere(radius: 1).material(m) }}"
+    for part in ("field", "tracer"):
+        made = compile_scene(text).glsl("glsl330", part=part, prefix="m")
+        main = (
+            "out vec4 c;\nvoid main() { c = vec4(m_properties(vec3(1.0)).color, m_properties(vec3(1.0)).roughness); }\n"
+        )
+        assert_valid({f"{part}.frag": f"#version 330 core\n{made}{main}"}, "glsl330", tmp_path)

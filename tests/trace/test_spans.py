@@ -45,7 +45,7 @@ UNKNOWN = {
     "a star, blended": STAR + "scene { smooth_union(0.2) { star() sphere(radius: 0.5).translate([0.6, 0.6, 0.6]) } }",
 }
 FORCED = {
-    "a twisted union": "scene { (box(size: [0.6, 1.6, 0.6]) | sphere(radius: 0.4).translate([0.4, 0.5, 0])).twist(2rad) }",
+    "a twisted union": "scene { (box(size: [0.6, 1.6, 0.6]) | sphere(radius: 0.4).translate([0.4, 0, 0])).twist(1rad)}",
     "a repeated warp": "scene { box(size: [0.3, 1, 0.3]).twist(100deg).repeat([0.8, 4, 0.8], count: [3, 1, 3]) }",
     "cut away": "scene { box(size: 1.2) - sphere(radius: 0.7).displace(amplitude: 0.05, wavelength: 0.3) }",
 }

@@ -21,7 +21,7 @@ def _in_a_block(items: list[Item], brief: Brief) -> list[Item]:
         for line in (f"#ifndef {name}", f"#define {name} {value}", "#endif")
     ]
     members = [f"    {i.type} {', '.join(i.names)};" + (f"  // {i.note}" if i.note else "") for i in free]
-    head = f"layout(std140, set = {stem}_SET, binding = {stem}_BINDING) uniform {brief.prefix}_uniforms {{"
+    head = f"layout(std140, set = {stem}_SET, binding = {stem}_BINDING) uniform {brief.prefix}_uniforms_of_scene {{"
     block = Item(Kind.UNIFORM, tuple(n for i in free for n in i.names), "", "\n".join([head, *members, "};"]))
     kept = [Item(Kind.DIRECTIVE, (), "", "\n".join(macros)), block]
     return [*items[:place], *kept, *(item for item in items[place:] if item not in free)]
