@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -37,7 +39,25 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("command", commands())
+def is_endless(command: str) -> bool:
+    return command.startswith("sdfc watch ")
+
+
+@pytest.mark.parametrize("command", filter(is_endless, commands()))
+def test_commands_that_go_on_for_ever(command: str, folder: Path) -> None:
+    """They say what they have made, and go on until they are interrupted."""
+    program = [sys.executable, "-m", "sdfc", *shlex.split(command)[1:]]
+    with subprocess.Popen(program, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        said = process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(60) == 130
+    assert "shader: " in said
+    for made in re.findall(r"-o (\S+)", command):
+        assert (folder / made).stat().st_size > 0
+
+
+@pytest.mark.parametrize("command", itertools.filterfalse(is_endless, commands()))
 def test_commands(command: str, folder: Path) -> None:
     program = [sys.executable, "-m", "sdfc"]
     done = subprocess.run(

@@ -63,9 +63,7 @@ def animate(scene: Path, scene_format: str | None, output: Path, asked: dict[str
     from sdfc.api.request import View
     from sdfc.cli.progress import ProgressBar
 
-    frames, size, resume = asked["frames"], asked["size"], asked["resume"]
-    fps = asked["fps"] or DEFAULT_FPS
-    view = View(**asked["camera"])
+    frames, size, fps, resume = asked["frames"], asked["size"], asked["fps"] or DEFAULT_FPS, asked["resume"]
     renderer = ""
     reel = open_reel(output, size, fps, asked["aovs"], asked["aov_format"], resume)
     with (
@@ -79,7 +77,7 @@ def animate(scene: Path, scene_format: str | None, output: Path, asked: dict[str
             size,
             fps=fps,
             skip=kept,
-            camera=view,
+            camera=View(**asked["camera"]),
             params=asked["settings"],
             **{name: asked[name] for name in ("loop", "samples", "tracer", "backend", "aovs")},
             progress=progress,

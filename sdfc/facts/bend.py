@@ -28,7 +28,7 @@ class Bends:
         self._found: dict[tuple[int, Box], Expr | None] = {}
 
     def bound(self, shape: Apply, region: Box) -> Expr | None:
-        """K: along lines of unit speed the core falls no faster than f + f' x - K x x / 2, while it is positive.
+        """K: along lines of unit speed the core falls no faster than f + f' x - K x x / 2, while it is above -DEEP.
 
         None where no bound is known. Where params are live, K goes by their values: a step for each piece of a range.
         """

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdfc.field import interval_rules as rules
+from sdfc.field.core import DEEP
 from sdfc.field.graph import Expr, Op
 from sdfc.field.interval import halves
 from sdfc.field.interval_bends import BENDS, Bend, everything_where, moving
@@ -88,9 +89,9 @@ def bend_bounds(
 ) -> list[float]:
     """K such that `root` (FLOAT in the VEC3 `p`) falls no faster than f + f' x - K x x / 2 along any line in the box.
 
-    One for each of `pieces`, which are ranges of the params. Only while the root is not negative: what happens inside
-    the solid does not count. Infinite if none is found. The box is cut where the bounds are worst until `boxes` have
-    been looked at, or cutting does not help.
+    One for each of `pieces`, which are ranges of the params. Only while the root is not below -DEEP: what happens
+    inside the solid does not count. Infinite if none is found. The box is cut where the bounds are worst until `boxes`
+    have been looked at, or cutting does not help.
     """
     evaluator = BendEvaluator(root, convex)
     search = _Search(evaluator, pieces, np.array(lo, float), np.array(hi, float), _anywhere())
@@ -163,7 +164,7 @@ class _Search:
         }
         cells = Interval(np.tile(self._cells.lo, count), np.tile(self._cells.hi, count))
         value, bend = self._evaluator(box, cells, params)
-        down = np.where(value.hi < 0.0, 0.0, np.maximum(-bend.lo, 0.0))
+        down = np.where(value.hi < -DEEP, 0.0, np.maximum(-bend.lo, 0.0))
         worst: Array = np.broadcast_to(down, (each * count,)).reshape(count, each).max(axis=1)
         return worst
 

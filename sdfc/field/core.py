@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from sdfc.field.graph import Expr, Op, topological
 
+DEEP = 2.0**-16  # bounds of its bend hold so deep inside too, in its own unit: what is cut is looked for a little sunk
+
 _POSITIVE = frozenset({Op.ABS, Op.SQRT, Op.LENGTH, Op.EXP})
 _KEPT = frozenset({Op.ADD, Op.MUL, Op.DIV, Op.MIN})
 

@@ -55,9 +55,9 @@ first_out gone gradient haste iMouse iResolution iTime inside leave light_at loo
 march material meeting narrowed near_point nearer nearer_of nearest normal_out occlusion_weight openness origin_out
 own own_tolerance painted_as parabola picture piece pixel pixel_centre point_falloff position_out prepare properties
 radiance radiance_out ray_ahead ray_cone ray_origin rebase reflect_light rounding scene_from_clip sdf sky sky_radiance
-span_complement span_hull span_intersection span_union span_within start_out start_state steps sun_disc surface
-tangent tile_ray tolerance tone_map trace trace_pixel trace_ray transmit travelled turned unfinished weight_row window
-within
+span_complement span_hull span_intersection span_union span_within start_out start_state steps sun_disc
+sunk_parabola surface tangent tile_ray tolerance tone_map trace trace_pixel trace_ray transmit travelled turned
+unfinished weight_row window within
 """
 
 # Locals of templates and of generated statements: no function and no local of an expression may take these.

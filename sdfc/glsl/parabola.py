@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sdfc.field.core import DEEP
 from sdfc.field.graph import Expr, FieldGraph
 from sdfc.glsl.body import Body, own_point
 from sdfc.glsl.functions import Functions, Role
@@ -20,8 +21,10 @@ def parabola_next(graph: FieldGraph, functions: Functions, body: Body, step: Bal
     least = graph.constant(1.0 / max(step.lipschitz, 1e-9))
     radius = f"{name}.x" if _is_one(least) else f"{body.text(least)} * {name}.x"
     bend = graph.max(step.bend * part.own_grow * part.own_grow * part.stretch, 1e-6)
-    sunk, eps = ("sunk + ", "fine") if cut else ("", "eps")
-    return f"parabola(t, {sunk}{radius}, {name}.yz, {body.text(bend)}, {eps})"
+    if cut:
+        deep = body.text(DEEP * part.stretch)
+        return f"sunk_parabola(t, {radius}, {name}.yz, {body.text(bend)}, sunk, {deep}, fine)"
+    return f"parabola(t, {radius}, {name}.yz, {body.text(bend)}, eps)"
 
 
 def _is_one(value: Expr) -> bool:

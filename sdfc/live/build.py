@@ -86,7 +86,7 @@ def _settled(snapshot: Snapshot, carried: Live, wanted: Sequence[Touched], room:
     """The literals that elaboration accepts, in the ranges that it accepts them in."""
     fresh = {item.key for item in wanted}
     kept = [(key, made) for key, made in carried.items() if key not in fresh]
-    live = dict(kept[len(kept) - max(0, room - len(wanted)) :] if room > len(wanted) else [])
+    live = dict(kept[max(0, len(kept) - (room - len(wanted))) :])
     if live and not _accepted(snapshot, live):
         live = {}
     free = numbers.names(pipeline.MOST_PARAMS, list(snapshot.contents.values()), live)

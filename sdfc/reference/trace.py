@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdfc.facts.box import Box, everything, nothing
+from sdfc.field.core import DEEP
 from sdfc.field.graph import Expr
 from sdfc.field.piece import SHORT, look
 from sdfc.plan.plan import FINE, Plan
@@ -273,7 +274,12 @@ class StepTracer:
         """To the root of the parabola below the field's core, or by the empty ball where that is more."""
         bend = max(self._formulas.bend(step.part, known), 1e-6)
         value, core, slope = self._formulas.parabola(step.part, here.rays.at(here.t), here.rays.d)
-        radius = value / max(step.lipschitz, 1e-9) + (3.0 * near if cut else 0.0)
+        radius = value / max(step.lipschitz, 1e-9)
+        if cut:  # next to the face, and in the layer by which it is sunk, the parabola too must come down so far
+            per = np.where(radius != 0.0, core / np.where(radius != 0.0, radius, 1.0), 1.0)
+            layer = np.minimum(2.0 * near * per, DEEP * self._formulas.constant(step.part.stretch)[0])
+            core = core + np.where(radius < near, layer, 0.0)
+            radius = radius + 3.0 * near
         above = np.maximum(core, 0.0)
         fall = 1e-12 - slope
         root = np.sqrt(fall * fall + 2.0 * bend * above)

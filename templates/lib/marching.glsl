@@ -21,6 +21,14 @@ float parabola(float t, float r, vec2 v, float bend, float eps) {
     return max(r, clear) <= eps ? t : t + max(r, clear) * 0.9999996;
 }
 
+// The same where the solid is looked for `sunk` deeper. Next to its face, and within the layer between, the parabola must
+// come down as far by the core's own measure: a ray that runs along the layer would creep. It is known to hold down to
+// `deep`.
+float sunk_parabola(float t, float r, vec2 v, float bend, float sunk, float deep, float eps) {
+    float layer = max(sunk - eps, 0.0) * (r != 0.0 ? v.x / r : 1.0);
+    return parabola(t, sunk + r, vec2(v.x + (r < eps ? min(layer, deep) : 0.0), v.y), bend, eps);
+}
+
 // v: the value, `least` of which is the radius within which nothing is nearer; `span`: what is known of it over the piece
 // of the ray that is `ahead` long, which is left as long as the next look should be. The solid is looked for a length
 // `sunk` deeper. It is there where no more than eps is clear of so short a piece: the slope near by counts, not the

@@ -10,7 +10,7 @@ from click.testing import Result
 
 Run = Callable[..., Result]
 
-VERBS = ("render", "check", "explain", "emit-glsl", "list", "bench", "doctor", "completion")
+VERBS = ("render", "watch", "check", "explain", "emit-glsl", "list", "bench", "doctor", "completion")
 
 
 @pytest.mark.parametrize("verb", VERBS)
