@@ -34,7 +34,10 @@ class BendEvaluator:
 
     def __init__(self, root: Expr, convex: Mapping[int, tuple[Expr, float]]) -> None:
         self.root = root
-        self._nodes = evaluation_order([root])
+        met = {node.id for node in evaluation_order([root])}
+        # the vectors too, and first: where a formula uses no more than their components they are not below the root
+        points = [point for node, (point, _) in convex.items() if node in met]
+        self._nodes = evaluation_order([*points, root])
         self._convex = convex
 
     def __call__(self, box: Interval, direction: Interval, params: Mapping[str, Interval]) -> tuple[Interval, Interval]:

@@ -141,3 +141,19 @@ def test_the_core_has_the_sign() -> None:
     assert signed_core(core * graph.call(Op.EXP, p[1])) is core
     assert signed_core(core - 1.0).op is Op.SUB
     assert signed_core(core * p[1]).op is Op.MUL and not is_positive(p[1])
+
+
+@pytest.mark.parametrize(
+    "solid",
+    [
+        "difference(blend: 0.2) { box() cone().scale([1, 2, 1]) }",
+        "difference(chamfer: 0.1) { box() solid_angle().shear(xy: 0.2) }",
+        "difference(blend: 0.2) { box() lens().shear(xy: 0.2) }",
+        "(~solid_angle().shear(xy: 0.2)).round(0.1) & sphere(radius: 2)",
+    ],
+)
+def test_a_convex_part_that_is_stretched_and_taken_away_smoothly(solid: str) -> None:
+    from sdfc.diagnostics import Source
+    from sdfc.pipeline import compile_scene, load
+
+    assert "march" in compile_scene(load(Source("test.sdf", f"scene {{ {solid} }}"))).glsl("depth")
