@@ -22,7 +22,7 @@ Rule: TypeAlias = Callable[["_Rays", Array, NDArray[np.int64]], Array]  # rays, 
 
 RAYS = 256
 MOST = 80  # steps: what takes longer is long either way
-_LATE = 4 * MOST  # what a ray still counts that is not there by then: its tracer would stop too early
+_LATE = 16 * MOST  # what a ray still counts that is not there by then: its tracer would stop too early
 NEAR = 1e-5  # of the box: what counts as there
 _CUTS = 16  # of a piece that no bound is known for, before it counts as one
 _STEEP = 1e-4 * HUGE  # what is steeper may be a jump

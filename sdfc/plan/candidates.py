@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import assert_never
 
 from sdfc.facts.cost import cost
+from sdfc.facts.exactness import exactness
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.plan.cluster import CLUSTER
 from sdfc.plan.plan import FINE, Plan
@@ -28,7 +29,7 @@ from sdfc.plan.steps import (
     is_closed,
     leaves_of,
 )
-from sdfc.shape.definition import Kind
+from sdfc.shape.definition import Exactness, Kind
 from sdfc.shape.lower import Lowering, lower_ray
 from sdfc.tracers import TRACERS
 
@@ -127,8 +128,20 @@ def _objection(name: str, plan: Plan) -> str:
     unbounded = [leaf.part.name for leaf in leaves_of(plan.root) if not math.isfinite(plan.slopes[id(leaf.part)])]
     if unbounded:
         return f"no Lipschitz constant is known for {', '.join(unbounded[:3])}"
+    flat = [leaf.part.name for leaf in leaves_of(plan.root) if _is_no_distance(leaf)]
+    if flat:
+        return f"the value of {', '.join(flat[:3])} over its Lipschitz constant does not tell how near it is"
     weak = TRACERS[name].weak
     return "; ".join(f"may fail at {family}: {why}" for family, why in weak.items())
+
+
+def _is_no_distance(leaf: Leaf) -> bool:
+    """Whether a leaf is a formula that may be much flatter at its surface than its constant allows elsewhere."""
+    match leaf:
+        case Ball(part=part):
+            return exactness(part.shape)[part.shape.id] is Exactness.NONE
+        case _:
+            return False
 
 
 def _classic() -> float:

@@ -167,3 +167,17 @@ def test_no_look_passes_a_root() -> None:
         assert (t <= first + 1e-9).all()
     assert (first[done] - t[done] <= SHORT * 1e-6).all()
     assert done[first < 1e3].all()
+
+
+def test_a_root_of_third_order_is_where_it_is(tracing: Tracing) -> None:
+    """A field that is flat at its surface: the ball of radius 1, which balls of its constant swell by a tenth."""
+    product = " * ".join(["(length(p) - 1)"] * 3)
+    text = f"field flat() = {product} bounds -[1.2, 1.2, 1.2]..[1.2, 1.2, 1.2]\nscene {{ flat() }}"
+    picture = tracing.picture(compiled_text(text), (48, 32))
+    scale = 1.0 / compiled_text(text).plan.radius
+    near = np.linalg.norm(np.cross(picture.o.T, picture.d.T), axis=1)
+    assert picture.hit[near < 0.99 * scale].all() and not picture.hit[near > 1.01 * scale].any()
+    along = -(picture.o * picture.d).sum(axis=0)
+    truth = along - np.sqrt(np.maximum(scale**2 - near**2, 0.0))
+    inner = near < 0.9 * scale
+    assert np.abs(picture.depth - truth)[inner].max() < 5e-3 * scale
