@@ -50,8 +50,15 @@ def golden(request: pytest.FixtureRequest) -> Golden:
     return compare
 
 
+@pytest.fixture
+def gl(gl_context: moderngl.Context) -> moderngl.Context:
+    """The OpenGL context, current: tests before this one may have had others."""
+    gl_context.__enter__()
+    return gl_context
+
+
 @pytest.fixture(scope="session")
-def gl() -> Iterator[moderngl.Context]:
+def gl_context() -> Iterator[moderngl.Context]:
     """An OpenGL context. Without one the test is skipped, or fails if SDFC_REQUIRE_GL=1 (as in CI)."""
     import moderngl
 
@@ -66,7 +73,7 @@ def gl() -> Iterator[moderngl.Context]:
 
 
 @pytest.fixture(scope="session")
-def run_function(gl: moderngl.Context) -> RunFunction:
+def run_function(gl_context: moderngl.Context) -> RunFunction:
     """run_function(function, inputs, params={}) prints the function as GLSL and evaluates it over arrays on the GPU.
 
     `inputs` has (n,) for a FLOAT parameter and (k, n) for a VECk; the result likewise, float32; a BOOL gives 0 and 1.
@@ -84,14 +91,15 @@ def run_function(gl: moderngl.Context) -> RunFunction:
         given = np.concatenate(rows) if rows else np.zeros((1, 1), np.float32)
         count = given.shape[1]
         size = function.result.type.size
-        program = gl.compute_shader(_compute_shader(function, count))
+        gl_context.__enter__()
+        program = gl_context.compute_shader(_compute_shader(function, count))
         _set_uniforms(program, function.result, params or {})
-        source = gl.buffer(np.ascontiguousarray(given).tobytes())
-        target = gl.buffer(reserve=4 * size * count)
+        source = gl_context.buffer(np.ascontiguousarray(given).tobytes())
+        target = gl_context.buffer(reserve=4 * size * count)
         source.bind_to_storage_buffer(0)
         target.bind_to_storage_buffer(1)
         program.run((count + 63) // 64)
-        gl.finish()
+        gl_context.finish()
         result = np.frombuffer(target.read(), np.float32).reshape(size, count)
         for resource in (source, target, program):
             resource.release()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
@@ -34,6 +34,7 @@ class Device:
     renderer: str
     version: str
     libraries: str  # what was loaded, for `doctor`
+    _closed: list[bool] = field(default_factory=list)
 
     @property
     def is_llvmpipe(self) -> bool:
@@ -52,6 +53,10 @@ class Device:
         count: int = self.context.info["GL_MAX_COLOR_ATTACHMENTS"]
         return count
 
+    def make_current(self) -> None:
+        """Let what is called next be for this context: there may be others in the process, of ours or of the caller."""
+        self.context.__enter__()
+
     def check(self, doing: str) -> None:
         """Raise DeviceError if OpenGL has reported an error since the last check."""
         error = self.context.error
@@ -60,7 +65,10 @@ class Device:
 
     def close(self) -> None:
         """Give the context back. Closing twice is harmless."""
-        self.context.release()
+        if not self._closed:
+            self._closed.append(True)
+            self.make_current()
+            self.context.release()
 
     def __enter__(self) -> Self:
         return self

@@ -42,6 +42,7 @@ class Frame:
         self.device = device
         self.width = width
         self.height = height
+        device.make_current()
         with device_errors(device, f"making a frame of {width}x{height}"):
             self._images: list[moderngl.Texture] = [
                 device.context.texture((width, height), 4, dtype="f4") for _ in range(attachments)
@@ -79,18 +80,21 @@ class Frame:
 
     def bind(self, unit: int = 0, attachment: int = 0) -> None:
         """Let the programs that are drawn next read an image, as texture `unit`."""
+        self.device.make_current()
         self._images[attachment].use(unit)
 
     def read(self, attachment: int = 0) -> NDArray[np.float32]:
         """One image as float32 (height, width, 4), rows from the top."""
         import numpy as np
 
+        self.device.make_current()
         with device_errors(self.device, "reading the frame back"):
             data = self._framebuffer.read(components=4, attachment=attachment, dtype="f4")
         return np.frombuffer(data, np.float32).reshape(self.height, self.width, 4)[::-1]
 
     @contextmanager
     def _in_use(self) -> Iterator[None]:
+        self.device.make_current()
         self._framebuffer.use()
         try:
             yield
@@ -99,6 +103,7 @@ class Frame:
 
     def release(self) -> None:
         """Free the images on the device."""
+        self.device.make_current()
         # Never release a framebuffer in use: making the next one would bind its dead name again (moderngl 5.13).
         self.device.context.detect_framebuffer(0).use()
         self._framebuffer.release()

@@ -85,6 +85,7 @@ class FragmentProgram:
         import moderngl
 
         self.device = device
+        device.make_current()
         try:
             self._program = device.context.program(vertex_shader=vertex, fragment_shader=fragment)
         except moderngl.Error as error:
@@ -101,6 +102,7 @@ class FragmentProgram:
 
     def set(self, values: Mapping[str, Value]) -> None:
         """Write every uniform. One without a value is a bug; a value that the driver optimised away is not."""
+        self.device.make_current()
         missing = sorted(self._uniforms.keys() - values.keys())
         if missing:
             raise InternalError(f"no value for the uniforms {', '.join(missing)}")
@@ -115,6 +117,7 @@ class FragmentProgram:
 
     def release(self) -> None:
         """Free the program on the device."""
+        self.device.make_current()
         self._array.release()
         self._program.release()
 

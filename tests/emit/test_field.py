@@ -71,7 +71,7 @@ def computed(gl: moderngl.Context, shader: str, given: np.ndarray[Any, Any], siz
 
 
 @pytest.fixture(scope="module")
-def values(gl: moderngl.Context) -> Iterator[dict[str, tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]]]:
+def values(gl_context: moderngl.Context) -> Iterator[dict[str, tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]]]:
     """By scene: points, and distance, gradient and material there. Filled as tests ask."""
     yield {}
 
