@@ -163,22 +163,28 @@ class Compiled:
     setting: Setting
     shape: Shape  # in normal form, in the scene's own coordinates
     frame: Frame
-    _texts: dict[tuple[str, str], str] = field(default_factory=dict, repr=False)
+    _texts: dict[tuple[str, str, bool], str] = field(default_factory=dict, repr=False)
 
     @property
     def materials(self) -> tuple[str, ...]:
         """Names, by the index that the probe's material image holds."""
         return tuple(m.name for m in self.plan.materials)
 
-    def glsl(self, entry: str = "picture", stage: str = "fragment") -> str:
+    def glsl(self, entry: str = "picture", stage: str = "fragment", near_eye: bool = False) -> str:
         """One complete shader: `picture` (sRGB), `radiance` (linear) or `probe` (depth, normals, ...)."""
         from sdfc.glsl.assembly import assemble
 
-        key = (entry, stage)
+        key = (entry, stage, near_eye)
         if key not in self._texts:
             with deep_recursion():
-                self._texts[key] = assemble(self.scene.values, self.plan, self.setting, entry, stage)
+                self._texts[key] = assemble(
+                    self.scene.values, replace(self.plan, near_eye=near_eye), self.setting, entry, stage
+                )
         return self._texts[key]
+
+    def printed(self, entry: str) -> list[str]:
+        """The shaders of an entry that have been asked for so far."""
+        return [text for (name, _, _), text in self._texts.items() if name == entry]
 
     def vertex(self) -> str:
         """The vertex stage that radiance and probe are drawn with."""

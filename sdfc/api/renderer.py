@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from sdfc.api.request import View
 from sdfc.diagnostics import DeviceError
-from sdfc.plan.plan import TILE
+from sdfc.plan.plan import NEAR_EYE, TILE
 
 if TYPE_CHECKING:
     import numpy as np
@@ -130,8 +131,8 @@ class GlRenderer:
     @contextmanager
     def prepared(self, shot: Shot, entry: str, attachments: int = 1) -> Iterator[Prepared]:
         """A shot whose programs are compiled and whose frame is there, to be drawn as often as a measurement asks."""
-        program = self._program(shot.compiled.glsl(entry, "fragment"), shot.compiled.vertex())
         uniforms = shot.compiled.uniforms(shot.view, shot.params, shot.size)
+        program = self._program(shot.compiled.glsl(entry, "fragment", _is_near(uniforms)), shot.compiled.vertex())
         with self._sweep(shot) as sweep, self._frames.lent(*shot.size, attachments) as frame:
             yield Prepared(frame, program, uniforms, sweep)
 
@@ -150,8 +151,8 @@ class GlRenderer:
             yield Sweep(tiles, self._programs[glsl])
 
     def _draw(self, shot: Shot, entry: str, attachments: int, sample: int, progress: Progress | None) -> list[Buffer]:
-        program = self._program(shot.compiled.glsl(entry, "fragment"), shot.compiled.vertex())
         uniforms = shot.compiled.uniforms(shot.view, shot.params, shot.size, jitter(sample))
+        program = self._program(shot.compiled.glsl(entry, "fragment", _is_near(uniforms)), shot.compiled.vertex())
         with self._sweep(shot) as sweep, self._frames.lent(*shot.size, attachments) as frame:
             if sweep is not None:
                 sweep.draw(uniforms)
@@ -182,6 +183,12 @@ class GlRenderer:
         self._programs.clear()
         self._frames.release()
         self.device.close()
+
+
+def _is_near(uniforms: Mapping[str, Value]) -> bool:
+    """Whether the eye is so near that rays are moved to the scene by one step. A parallel ray begins there anyway."""
+    eye = uniforms["eye"]
+    return isinstance(eye, tuple) and math.hypot(*eye) <= NEAR_EYE
 
 
 def jitter(sample: int) -> tuple[float, float]:

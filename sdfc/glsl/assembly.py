@@ -151,6 +151,7 @@ class Assembly:
             "prepass": self._prepass,
             "tile": TILE,
             "sweep_is_finite": is_finite(plan.swept),
+            "rebase_template": f"lib/rebase{'_near' if plan.near_eye else ''}.glsl",
             "first_start": "max(-travelled, cleared)" if self._prepass and not tracer.needs_steps else "-travelled",
             "parameter": {name: literal(value) for name, value in plan.choice.values.items()},
             "surface": surface,

@@ -55,7 +55,7 @@ class Device:
 
     def make_current(self) -> None:
         """Let what is called next be for this context: there may be others in the process, of ours or of the caller."""
-        self.context.__enter__()
+        self.context.__enter__()  # type: ignore[no-untyped-call]
 
     def check(self, doing: str) -> None:
         """Raise DeviceError if OpenGL has reported an error since the last check."""

@@ -152,7 +152,7 @@ class Session:
         while len(self._recent) > _PROGRAMS_KEPT:
             del self._recent[next(iter(self._recent))]
         if isinstance(self._renderer, GlRenderer):
-            self._renderer.keep([compiled.glsl(ENTRY) for compiled in self._recent.values()])
+            self._renderer.keep([text for compiled in self._recent.values() for text in compiled.printed(ENTRY)])
         return Image(colour.astype("float32"), {}, shot.compiled.materials, self.renderer.name)
 
     def distrust(self) -> None:

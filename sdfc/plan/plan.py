@@ -17,6 +17,7 @@ SMALLEST_TOLERANCE = 2.0**-19  # sixteen roundings of numbers up to one
 FINE = 1.0 / 64.0  # of half a pixel: what every tracer is asked for, so that times compare at equal error
 LIFT = 2.0**-17  # how far shadow rays start above the surface: clear of CUT and of rounding
 HORIZON = 1e5  # how far rays are marched in a scene without end
+NEAR_EYE = 64.0  # radii: of the way from there one step of 11 bits leaves a thirtieth
 TILE = 8  # pixels across a tile of the cone prepass (ALGORITHMS B7)
 MOST_LOOPS = 60000  # llvmpipe stops all loops of an invocation together at 65 535 (GL.md 0)
 
@@ -33,6 +34,7 @@ class Plan:
     centre: tuple[float, float, float]
     is_finite: bool  # the whole scene lies in the unit ball of its own coordinates
     prepass: bool = False  # whether tiles of pixels are told first how far they are empty
+    near_eye: bool = False  # whether the eye is within NEAR_EYE: rays are moved to the scene by one step, not two
     budget: int | None = None  # a measurer's limit on the passes of a ray's loops
 
     @property

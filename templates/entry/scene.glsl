@@ -48,7 +48,7 @@ const vec3 CENTRE = {{ centre }};  // ... and its own origin
 {% include "lib/distance.glsl" %}
 
 {% endif %}
-{% include "lib/rebase.glsl" %}
+{% include rebase_template %}
 {% if surface %}
 
 {{ surface.structure }}
