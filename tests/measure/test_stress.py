@@ -139,7 +139,7 @@ def test_the_same_seed_grows_the_same_scenes() -> None:
 @pytest.mark.gpu
 @pytest.mark.parametrize("saboteur", ["absolute"], indirect=True)
 def test_a_run_by_the_command_line(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, saboteur: tuple[str, Saboteur]
+    gl_context: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, saboteur: tuple[str, Saboteur]
 ) -> None:
     """A failure is told, drawn and counted; where the tracer says that it is weak it is no failure."""
     name, _ = saboteur
@@ -178,7 +178,9 @@ def examples() -> list[str]:
 
 @pytest.mark.gpu
 @pytest.mark.parametrize("example", examples())
-def test_the_examples_of_the_page(example: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_examples_of_the_page(
+    gl_context: object, example: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     result = CliRunner().invoke(command, shlex.split(example)[1:], prog_name="sdfc")
     assert result.exit_code == 0, result.output
