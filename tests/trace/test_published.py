@@ -222,10 +222,12 @@ def test_points_below_the_surface_are_no_shadow(tracing: Tracing) -> None:
         lit, Options("liktor:min_step=8:refinements=0")
     )  # whose hits are as much as half a pixel deep
     constant, count = re.subn(
-        r"lift = clearance\(.*\);", f"lift = max({LIFT}, 4.0 * tolerance(0.0));", rough.glsl("radiance")
+        r"lift = clearance\(.*\);",
+        f"lift = max({LIFT}, 4.0 * tolerance(0.0));",
+        rough.glsl("radiance", near_eye=True),  # what an eye so near is drawn with
     )
     assert count == 1
-    printed = replace(rough, _texts={("radiance", "fragment"): constant})
+    printed = replace(rough, _texts={("radiance", "fragment", True): constant})
     exact, ours, theirs = (
         tracing.renderer.radiance(Shot(c, View(), {}, SIZE), 0, None).astype(float)
         for c in (compile_scene(lit, Options()), rough, printed)
