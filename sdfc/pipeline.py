@@ -11,6 +11,7 @@ from typing import Literal
 
 from sdfc.diagnostics import InternalError, SceneError, Source, scene_error
 from sdfc.facts.bounds import Bounds
+from sdfc.facts.curvature import is_convex_solid
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.ranges import Ranges
 from sdfc.facts.rule import Rules
@@ -25,7 +26,7 @@ from sdfc.passes.recognise import recognise
 from sdfc.plan.plan import Plan
 from sdfc.plan.prove import Prover, Rays
 from sdfc.plan.setting import Setting, setting_of
-from sdfc.plan.view import CameraChange, pixel_at, target_of, uniforms_of
+from sdfc.plan.view import CameraChange, pixel_at, target_of, uniform_name, uniforms_of
 from sdfc.scene.library import Library
 from sdfc.scene.literals import NO_LITERALS, Literals
 from sdfc.scene.model import Scene
@@ -79,6 +80,12 @@ def load(source: Source, folder: Path | None = None, kind: Kind = "sdf", literal
     for param in scene.params[MOST_PARAMS:]:
         message = f"a scene has at most {MOST_PARAMS} params: '{param.name}' is one too many"
         raise scene_error(message, param.span, "make one a constant with `def`")
+    uniforms: dict[str, str] = {}
+    for param in scene.params:
+        other = uniforms.setdefault(uniform_name(param), param.name)
+        if other != param.name:
+            message = f"params '{other}' and '{param.name}' would be one in GLSL, which takes '__' for '_'"
+            raise scene_error(message, param.span, "give one of them another name")
     return scene
 
 
@@ -182,6 +189,16 @@ class Compiled:
                 )
         return self._texts[key]
 
+    def web(self, entry: str) -> str:
+        """A complete shader for WebGL 2: `picture` (sRGB) or `inspect` (depth, normals, ... by `shown`)."""
+        from sdfc.glsl.assembly import assemble_for_web
+
+        key = (entry, "web", False)
+        if key not in self._texts:
+            with deep_recursion():
+                self._texts[key] = assemble_for_web(self.scene.values, self.plan, self.setting, entry)
+        return self._texts[key]
+
     def printed(self, entry: str) -> list[str]:
         """The shaders of an entry that have been asked for so far."""
         return [text for (name, _, _), text in self._texts.items() if name == entry]
@@ -235,6 +252,7 @@ def compile_scene(scene: Scene, options: Options = Options()) -> Compiled:
                 frame.radius,
                 frame.centre,
                 frame.is_finite,
+                is_convex_solid(root),
                 budget=options.most_steps,
             )
             plan = replace(plan, prepass=options.prepass and plan.can_sweep)

@@ -1,7 +1,8 @@
-"""Fixtures that every test may use: an OpenGL context, and field functions run on it."""
+"""Fixtures that every test may use: goldens, OpenGL, and field functions run on it."""
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -16,6 +17,9 @@ from sdfc.field.graph import Expr, Op, Type, topological
 if TYPE_CHECKING:
     import moderngl
     import numpy as np
+
+    from sdfc.api.renderer import GlRenderer
+    from sdfc.gpu.device import Device
 
 RunFunction = Callable[..., "np.ndarray[Any, Any]"]
 Golden = Callable[[str, str], None]
@@ -58,16 +62,43 @@ def gl(gl_context: moderngl.Context) -> moderngl.Context:
 
 
 @pytest.fixture(scope="session")
-def gl_context() -> Iterator[moderngl.Context]:
-    """An OpenGL context. Without one the test is skipped, or fails if SDFC_REQUIRE_GL=1 (as in CI)."""
-    import moderngl
+def opengl() -> None:
+    """OpenGL is here. Without it the test is skipped, or fails if SDFC_REQUIRE_GL=1 (as in CI)."""
+    from sdfc.diagnostics import DeviceError
+    from sdfc.gpu.device import open_device
 
     try:
-        context = moderngl.create_standalone_context(backend="egl")
-    except Exception as error:  # moderngl raises bare exceptions
+        open_device().close()
+    except DeviceError as error:
         if os.environ.get("SDFC_REQUIRE_GL") == "1":
-            pytest.fail(f"SDFC_REQUIRE_GL=1, but there is no OpenGL context: {error}")
-        pytest.skip(f"no OpenGL context: {error}")
+            pytest.fail(f"SDFC_REQUIRE_GL=1, but there is no OpenGL here: {error}")
+        pytest.skip(f"no OpenGL here: {error}")
+
+
+@pytest.fixture(scope="session")
+def device(opengl: None) -> Iterator[Device]:
+    """An open device."""
+    from sdfc.gpu.device import open_device
+
+    with open_device() as opened:
+        yield opened
+
+
+@pytest.fixture(scope="session")
+def renderer(opengl: None) -> Iterator[GlRenderer]:
+    """A renderer with a device of its own."""
+    from sdfc.api.renderer import GlRenderer
+
+    with contextlib.closing(GlRenderer()) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="session")
+def gl_context(opengl: None) -> Iterator[moderngl.Context]:
+    """An OpenGL context that is not sdfc's own, for shaders that a test writes."""
+    import moderngl
+
+    context = moderngl.create_standalone_context(backend="egl")
     yield context
     context.release()
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sdfc.api.choose import Decision
+from sdfc.api.job import FEWEST_DIGITS, FLOAT32
 from sdfc.pipeline import Compiled, Options, compile_scene, normalise
 from sdfc.plan.candidates import Candidate
 from sdfc.plan.steps import Step, is_closed, leaves_of
-from sdfc.shape.graph import Apply, topological
+from sdfc.plan.view import uniform_name
+from sdfc.shape.graph import Apply, Shape, topological
 
 _MOST_SHOWN = 8
 
@@ -22,14 +24,28 @@ def chosen(decision: Decision) -> list[str]:
     ]
     shown = [c for c in decision.candidates if not c.illegal][:_MOST_SHOWN]
     lines += [f"  {_candidate(c, decision.pilot)}" for c in shown]
-    barred = {c.tracer: c.illegal for c in decision.candidates if c.illegal}
-    return [*lines, *(f"  {name}: not chosen: {reason}" for name, reason in barred.items())]
+    barred: dict[str, list[str]] = {}
+    for name, reason in {c.tracer: c.illegal for c in decision.candidates if c.illegal}.items():
+        barred.setdefault(reason, []).append(name)
+    return [*lines, *(f"  {', '.join(names)}: not chosen: {reason}" for reason, names in barred.items())]
 
 
 def _candidate(candidate: Candidate, pilot: dict[str, float]) -> str:
     tried = f"; pilot {pilot[candidate.name]:.2f} ms" if candidate.name in pilot else ""
     passes = f", {candidate.passes:.1f} passes of marching" if candidate.passes else ", no marching"
     return f"{candidate.name}: {candidate.milliseconds:.1f} ms{passes}{tried}"
+
+
+def faint(compiled: Compiled) -> list[str]:
+    """Parts that float32 cannot tell from points: small ones of a scene that is very large."""
+    radius = compiled.frame.radius
+    small = {leaf.part.name: max(leaf.part.box.half) for leaf in leaves_of(compiled.plan.root)}
+    return [
+        f"warning: {name} is {2.0 * size * radius:.2g} across, but in a scene of radius {radius:.3g} "
+        f"float32 is right to {FLOAT32 * radius:.2g}: expect faults"
+        for name, size in small.items()
+        if size < FEWEST_DIGITS
+    ]
 
 
 def left_out(compiled: Compiled, options: Options) -> list[str]:
@@ -39,7 +55,7 @@ def left_out(compiled: Compiled, options: Options) -> list[str]:
     lines.append(f"from a depth image: normals and materials ({_kilobytes(probe - depth)})")
     lines.append(f"from a depth image: light and shading ({_kilobytes(radiance - depth)})")
     for param in compiled.scene.params:
-        if f"set_{param.name};" not in compiled.glsl("radiance"):
+        if f"{uniform_name(param)};" not in compiled.glsl("radiance"):
             lines.append(f"param {param.name}: nothing that is left depends on it, so it is no uniform")
     return ["left out:", *(f"  {line}" for line in lines)]
 
@@ -54,8 +70,8 @@ def _pruned(compiled: Compiled, options: Options) -> list[str]:
     return [f"{before - after} of {before} parts, which are proved to change nothing ({_kilobytes(saved)})"]
 
 
-def _solids(shape: object) -> int:
-    nodes = topological(shape)  # type: ignore[arg-type]
+def _solids(shape: Shape) -> int:
+    nodes = topological(shape)
     return sum(1 for node in nodes if isinstance(node, Apply) and node.dimension == 3 and node.definition.is_primitive)
 
 
@@ -76,6 +92,8 @@ def _unlit(compiled: Compiled) -> list[str]:
         lines.append("which material is seen: there is one")
     if not setting.lights:
         lines.append("shadow rays: there is no light")
+    elif compiled.plan.is_convex:
+        lines.append("shadow rays, and distances for ambient occlusion: the scene is one convex solid")
     return lines
 
 

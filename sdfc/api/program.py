@@ -105,7 +105,9 @@ class Program:
             decision = decide(self.scene, self._device_if_any(), pilot=True)
             options = options_of(decision.chosen)
             compiled, reasons = self.compiled_as(options), account.chosen(decision)
-        return "\n".join([compiled.explanation(), *reasons, *account.left_out(compiled, options)])
+        return "\n".join(
+            [compiled.explanation(), *account.faint(compiled), *reasons, *account.left_out(compiled, options)]
+        )
 
     def _device_if_any(self) -> GlRenderer | None:
         try:

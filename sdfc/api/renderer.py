@@ -132,7 +132,7 @@ class GlRenderer:
     def prepared(self, shot: Shot, entry: str, attachments: int = 1) -> Iterator[Prepared]:
         """A shot whose programs are compiled and whose frame is there, to be drawn as often as a measurement asks."""
         uniforms = shot.compiled.uniforms(shot.view, shot.params, shot.size)
-        program = self._program(shot.compiled.glsl(entry, "fragment", _is_near(uniforms)), shot.compiled.vertex())
+        program = self._program(shot.compiled.glsl(entry, "fragment", is_near(uniforms)), shot.compiled.vertex())
         with self._sweep(shot) as sweep, self._frames.lent(*shot.size, attachments) as frame:
             yield Prepared(frame, program, uniforms, sweep)
 
@@ -152,7 +152,7 @@ class GlRenderer:
 
     def _draw(self, shot: Shot, entry: str, attachments: int, sample: int, progress: Progress | None) -> list[Buffer]:
         uniforms = shot.compiled.uniforms(shot.view, shot.params, shot.size, jitter(sample))
-        program = self._program(shot.compiled.glsl(entry, "fragment", _is_near(uniforms)), shot.compiled.vertex())
+        program = self._program(shot.compiled.glsl(entry, "fragment", is_near(uniforms)), shot.compiled.vertex())
         with self._sweep(shot) as sweep, self._frames.lent(*shot.size, attachments) as frame:
             if sweep is not None:
                 sweep.draw(uniforms)
@@ -185,7 +185,7 @@ class GlRenderer:
         self.device.close()
 
 
-def _is_near(uniforms: Mapping[str, Value]) -> bool:
+def is_near(uniforms: Mapping[str, Value]) -> bool:
     """Whether the eye is so near that rays are moved to the scene by one step. A parallel ray begins there anyway."""
     eye = uniforms["eye"]
     return isinstance(eye, tuple) and math.hypot(*eye) <= NEAR_EYE

@@ -50,8 +50,14 @@ def _count(text: str) -> int:
     return int(text)
 
 
-def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int, int] | None:
-    return None if text is None else parse_size(text)
+def _size(text: str) -> tuple[int, int]:
+    from sdfc.api.request import checked_size
+
+    return checked_size(parse_size(text))
+
+
+def _grid(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int, int] | None:
+    return None if text is None else _size(text)
 
 
 @click.command()
@@ -61,9 +67,9 @@ def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int,
     "--tracers",
     callback=_listed(str),
     metavar="LIST",
-    help="Such as sphere,relaxed:omega=1.4,sphere+prepass,proven+all,auto (what the planner chooses). By default all.",
+    help="Such as sphere,relaxed:omega=1.4,sphere+prepass,proven+rays,auto (what the planner chooses). By default all.",
 )
-@click.option("--sizes", callback=_listed(parse_size), metavar="LIST", help="WxH. By default 640x360.")
+@click.option("--sizes", callback=_listed(_size), metavar="LIST", help="WxH. By default 640x360.")
 @click.option(
     "--tolerances",
     callback=_listed(_positive),
@@ -77,7 +83,7 @@ def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int,
     help="Also measure with at most so many steps a ray: 8,16,32,64,128,256. By default so, on a few known scenes.",
 )
 @click.option("--repeat", type=click.IntRange(1), help="Frames of each, unless they take long. By default 7.")
-@click.option("--grid", callback=_size, metavar="WxH", help="The picture whose every ray is judged. By default 160x90.")
+@click.option("--grid", callback=_grid, metavar="WxH", help="The picture whose every ray is judged. By default 160x90.")
 @click.option("--random", type=click.IntRange(1), help="How many pixels of the timed frame are judged: 2000.")
 @click.option("--all-rays", is_flag=True, help="Judge so many even where their truth takes minutes (chess, temple).")
 @click.option("--backend", default="gl", show_default=True, type=click.Choice(["gl"]), help="What draws.")
@@ -87,7 +93,7 @@ def _size(_: click.Context, __: click.Parameter, text: str | None) -> tuple[int,
     multiple=True,
     type=click.Path(path_type=Path, exists=True, dir_okay=False),
     metavar="FILE",
-    help="Somebody's own shader of the one SCENE, `float map(vec3 p)` or whole (bench/foreign/README.md).",
+    help="Somebody's own shader of the one SCENE, `float map(vec3 p)` or whole (bench/README.md).",
 )
 @click.option("--compare", nargs=2, type=_FOLDER, metavar="DIR1 DIR2", help="Show two runs side by side, and exit.")
 @click.option("--report", type=_FOLDER, metavar="DIR", help="Write the page about a run, and exit.")
@@ -114,7 +120,7 @@ def _wanted(asked: dict[str, Any]) -> Wanted:
     from dataclasses import replace
 
     from sdfc.measure.bench import plan
-    from sdfc.measure.bench.entrants import checked
+    from sdfc.measure.way import ways
 
     if asked["foreign"] and len(asked["scenes"]) != 1:
         raise click.UsageError("--foreign goes with one SCENE, which the shader shows")
@@ -124,7 +130,7 @@ def _wanted(asked: dict[str, Any]) -> Wanted:
     else:
         usual = replace(usual, scenes=plan.usual_scenes(plan.QUICK if asked["quick"] else ()))
     if asked["tracers"] is not None:
-        usual = replace(usual, tracers=checked(asked["tracers"]), swept=())
+        usual = replace(usual, tracers=tuple(way.name for way in ways(asked["tracers"])), swept=())
     if asked["budgets"] is not None and asked["scenes"]:
         usual = replace(usual, budgeted=tuple(path.name for path in asked["scenes"]))
     if asked["all_rays"]:

@@ -26,25 +26,30 @@ _REQUEST_ERRORS = frozenset({"RequestError", "OutputError"})
 
 def report(error: BaseException, as_json: bool) -> int:
     """Say what went wrong, in words on stderr or as JSON on stdout, and return the exit code."""
-    match error:
-        case SceneError():
-            words, code = show_all(error.diagnostics), EXIT_SCENE
-            details: dict[str, Any] = {"diagnostics": [described(d) for d in error.diagnostics]}
-        case DeviceError():
-            words, code, details = f"error: {error}", EXIT_DEVICE, {"message": str(error)}
-        case KeyboardInterrupt():
-            words, code, details = "\ninterrupted", EXIT_INTERRUPTED, {"message": "interrupted"}
-        case _ if type(error).__name__ in _REQUEST_ERRORS:  # by name: their modules may not even be loaded
-            words, code, details = f"error: {error}", EXIT_USAGE, {"message": str(error)}
-        case _:
-            stage = _stage(error)
-            words, code = _bug(error, stage), EXIT_BUG
-            details = {"message": f"{type(error).__name__}: {error}", "stage": stage}
+    words, code, details = account(error)
     if as_json:
         click.echo(json.dumps({"ok": False, "exit": code, **details}, indent=2))
     if not as_json or (code == EXIT_BUG and _is_debugging()):
         click.echo(words, err=True)
     return code
+
+
+def account(error: BaseException) -> tuple[str, int, dict[str, Any]]:
+    """What went wrong in words, the exit code, and what JSON has of it."""
+    match error:
+        case SceneError():
+            details: dict[str, Any] = {"diagnostics": [described(d) for d in error.diagnostics]}
+            return show_all(error.diagnostics), EXIT_SCENE, details
+        case DeviceError():
+            return f"error: {error}", EXIT_DEVICE, {"message": str(error)}
+        case KeyboardInterrupt():
+            return "\ninterrupted", EXIT_INTERRUPTED, {"message": "interrupted"}
+        case _ if type(error).__name__ in _REQUEST_ERRORS:  # by name: their modules may not even be loaded
+            return f"error: {error}", EXIT_USAGE, {"message": str(error)}
+        case _:
+            stage = _stage(error)
+            details = {"message": f"{type(error).__name__}: {error}", "stage": stage}
+            return _bug(error, stage), EXIT_BUG, details
 
 
 def described(diagnostic: Diagnostic) -> dict[str, Any]:

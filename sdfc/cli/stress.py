@@ -15,13 +15,15 @@ from sdfc.cli.values import parse_size
 if TYPE_CHECKING:
     from sdfc.measure.stress.record import Family
     from sdfc.measure.stress.run import Outcome
-    from sdfc.measure.stress.way import Way
+    from sdfc.measure.way import Way
 
 _REPORT, _DATA = "stress.md", "stress.json"
 
 
 def _size(_: click.Context, __: click.Parameter, text: str) -> tuple[int, int]:
-    return parse_size(text)
+    from sdfc.api.request import checked_size
+
+    return checked_size(parse_size(text))
 
 
 def _names(_: click.Context, __: click.Parameter, text: str) -> tuple[str, ...]:
@@ -35,7 +37,8 @@ def _names(_: click.Context, __: click.Parameter, text: str) -> tuple[str, ...]:
     default="",
     callback=_names,
     metavar="NAMES",
-    help="By default all; proven+prepass is with the cone prepass, +rays with every closed form.",
+    help="By default all; sphere+prepass is with the cone prepass, proven+rays with every closed form, auto what the"
+    " planner chooses.",
 )
 @click.option("--size", default="48x27", show_default=True, callback=_size, metavar="WxH", help="Rays a case.")
 @click.option("--random", "count", default=0, type=click.IntRange(0), metavar="N", help="Also so many random scenes.")
@@ -54,10 +57,10 @@ def command(cases: tuple[str, ...], output: Path | None, as_json: bool, **asked:
     CASE is a family of cases, or FAMILY/CASE with * for anything. Exits with 1 if a tracer broke a guarantee that it
     gives.
     """
-    from sdfc.api.request import checked_size
     from sdfc.measure.stress.run import chosen
     from sdfc.measure.stress.trees import grown
-    from sdfc.measure.stress.way import ways
+    from sdfc.measure.way import ways
+    from sdfc.tracers import TRACERS
 
     grown_now = (grown(asked["count"], asked["seed"]),) if asked["count"] else ()
     named = chosen(cases) if cases or not grown_now else ()
@@ -65,7 +68,7 @@ def command(cases: tuple[str, ...], output: Path | None, as_json: bool, **asked:
     if asked["only_list"]:
         _list(families, as_json)
         return
-    outcomes, device = _run(families, ways(asked["tracers"]), checked_size(asked["size"]), output)
+    outcomes, device = _run(families, ways(asked["tracers"] or TRACERS), asked["size"], output)
     _say(outcomes, families, asked["size"], device, as_json)
     if any(outcome.is_broken for outcome in outcomes):
         click.get_current_context().exit(1)

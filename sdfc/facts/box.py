@@ -40,6 +40,15 @@ class Box:
     def widened(self, margin: float) -> Box:
         return Box(tuple(a - margin for a in self.lo), tuple(b + margin for b in self.hi))
 
+    def rounded(self) -> Box:
+        """A box around this one, by 1e-12 of its numbers: equal for boxes that only rounding tells apart."""
+        if not self.is_finite:
+            return self
+        largest = max(1e-280, *map(abs, (*self.lo, *self.hi)))
+        step = 2.0 ** (math.frexp(0.71 * largest)[1] - 40)  # which jumps at no number that one would write
+        lo = (step * math.floor(a / step - 0.25) for a in self.lo)
+        return Box(tuple(lo), tuple(step * math.ceil(b / step + 0.25) for b in self.hi))
+
     def hull(self, other: Box) -> Box:
         if self.is_empty:
             return other

@@ -1,4 +1,4 @@
-"""Which fields are convex functions: tangents of them never overshoot (ALGORITHMS B1, C5)."""
+"""Which fields are convex functions: tangents of them never overshoot (ALGORITHMS B1, C5). Which solids are convex."""
 
 from __future__ import annotations
 
@@ -19,6 +19,20 @@ def convex_shapes(root: Shape) -> frozenset[int]:
         if _is_convex(shape, convex):
             convex.add(shape.id)
     return frozenset(convex)
+
+
+def is_convex_solid(root: Shape) -> bool:
+    """Whether the whole solid is known to be convex: no point of its surface hides the sky or a light from another."""
+    convex = set(convex_shapes(root))
+    for shape in topological(root):
+        match shape:
+            case Apply():  # of a gauge the solid is convex, though the formula need not be, nor what is made of it
+                is_solid = shape.definition.is_primitive and shape.definition.claims.convex
+            case _:
+                is_solid = _is_convex(shape, convex)
+        if is_solid:
+            convex.add(shape.id)
+    return root.id in convex
 
 
 def _is_convex(shape: Shape, convex: set[int]) -> bool:

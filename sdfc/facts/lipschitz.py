@@ -162,6 +162,12 @@ class Lipschitz:
         from sdfc.field.interval import gradient_bound
 
         what = f"no bound of the slope of '{shape.definition.name}' could be found"
+        claims = shape.definition.claims
+        if not region.is_finite and claims.bounds is not None and not claims.bounds_use_level:
+            hint = "claim one (`lipschitz 2`), or bounds that use `level`: where its value is at most that"
+            return scene_error(
+                f"{what}: its bounds say nothing of where it is above zero, which counts here", shape.span, hint
+            )
         if not region.is_finite:
             hint = "claim one (`lipschitz 2`), or keep it in a box: `& box(size: [2, 2, 2])`"
             return scene_error(f"{what}: it has no bounds", shape.span, hint)

@@ -20,6 +20,7 @@ from sdfc.shape.lower import Lowering
 _PARABOLA = 1.4  # what a step by a parabola costs, in steps by balls: 1.2 to 1.6, measured on llvmpipe
 _BALL, _PIECE = 10.0, 40.0  # additions that a step takes besides the field's own
 _DENSE = 0.6  # of what is counted for a piece, it takes: its many small operations wait for nothing (measured there)
+_FLAT = 8.0  # times flatter than its steepest
 _FEW = 8.0  # steps: no other rule pays where there are no more
 _EXACT = (Exactness.EXACT, Exactness.EXACT_OUTSIDE)
 
@@ -40,17 +41,19 @@ class Rules:
         self._ranges = ranges
         self._bounds = bounds
         self.bends = Bends(ranges, bounds, lipschitz)
-        self._found: dict[tuple[int, Box, float, bool], Rule | None] = {}
+        self._found: dict[tuple[int, Box, float, bool, bool], Rule | None] = {}
 
-    def best(self, shape: Apply, region: Box, lipschitz: float, inside: bool) -> Rule | None:
+    def best(self, shape: Apply, region: Box, lipschitz: float, inside: bool, is_cut: bool) -> Rule | None:
         """The rule that costs least. `lipschitz` may be infinite: None where nothing else is known that holds.
 
-        The region is finite. Where params are live, the choice is made for the middle of their ranges.
+        `is_cut`: it is in an intersection, where the solid is looked for a little deeper. The region is finite. Where
+        params are live, the choice is made for the middle of their ranges.
         """
-        key = shape.id, region, lipschitz, inside
+        region = region.rounded()  # like parts are alike wherever they are placed: they are looked at once
+        key = shape.id, region, lipschitz, inside, is_cut
         if key not in self._found:
             if math.isfinite(lipschitz):
-                self._found[key] = self._chosen(shape, region, lipschitz, inside)
+                self._found[key] = self._chosen(shape, region, lipschitz, inside, is_cut)
             else:
                 self._found[key] = self._only(shape, region, inside)
         return self._found[key]
@@ -64,7 +67,7 @@ class Rules:
                 return None
         return Rule(by_pieces=True, why="no Lipschitz constant is known")
 
-    def _chosen(self, shape: Apply, region: Box, lipschitz: float, inside: bool) -> Rule:
+    def _chosen(self, shape: Apply, region: Box, lipschitz: float, inside: bool, is_cut: bool) -> Rule:
         from sdfc.field.trial import Trial
 
         bend = self.bends.bound(shape, region) if inside else None
@@ -74,6 +77,9 @@ class Rules:
         value = self._value(shape, inside)
         trial = Trial(value, region.lo, region.hi, self._params(0.5))
         slope = max(lipschitz, 1e-9)
+        # deeper by the steepest slope: of a field that is flat where its surface is, much deeper
+        if is_cut and not is_exact and _FLAT * trial.steepness() < slope:
+            return Rule(by_pieces=True, why="it is far flatter where its surface is")
         steps = trial.balls(slope)
         least, best, tried = steps, Rule(), [f"{steps:.3g} steps by balls"]
         if bend is not None:

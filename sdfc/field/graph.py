@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import TypeAlias, cast
 
 from sdfc.field.folding import fold
 from sdfc.field.operations import BINARY as BINARY
@@ -18,6 +18,11 @@ from sdfc.field.operations import UNARY as UNARY
 from sdfc.field.operations import Op as Op
 from sdfc.field.operations import Type as Type
 from sdfc.field.simplify import simplify
+
+# members of enums are dear to look up, and nodes are made by the ten thousand
+_CONST, _FLOAT = Op.CONST, Type.FLOAT
+_OF_SIZE = tuple(Type)  # by the number of components
+_RESULT = dict.fromkeys((Op.DOT, Op.LENGTH), Type.FLOAT) | dict.fromkeys(COMPARISON | LOGIC, Type.BOOL)
 
 Value: TypeAlias = tuple[float, ...] | tuple[int, ...] | str | None
 Number: TypeAlias = float | int
@@ -76,19 +81,19 @@ class Expr:
 
     @property
     def is_constant(self) -> bool:
-        return self.op is Op.CONST
+        return self.op is _CONST
 
     @property
     def number(self) -> float:
         """The value of a constant FLOAT."""
-        assert self.op is Op.CONST and self.type is Type.FLOAT and isinstance(self.value, tuple)
-        return float(self.value[0])
+        assert self.type is _FLOAT
+        return self.numbers[0]
 
     @property
     def numbers(self) -> tuple[float, ...]:
         """The components of a constant."""
-        assert self.op is Op.CONST and isinstance(self.value, tuple)
-        return tuple(float(v) for v in self.value)
+        assert self.op is _CONST
+        return cast("tuple[float, ...]", self.value)
 
 
 class FieldGraph:
@@ -102,18 +107,17 @@ class FieldGraph:
 
     def _intern(self, op: Op, type_: Type, args: tuple[Expr, ...], value: Value) -> Expr:
         # repr keeps -0.0 and 0.0 apart, and makes NaN equal to itself
-        key = (op, type_, tuple([a.id for a in args]), repr(value) if op is Op.CONST else value)
+        key = (op, type_, tuple([a.id for a in args]), repr(value) if op is _CONST else value)
         node = self._nodes.get(key)
         if node is None:
             node = self._nodes[key] = Expr(self, len(self._nodes), op, type_, args, value)
         return node
 
     def constant(self, *components: Number) -> Expr:
-        values = tuple(float(c) for c in components)
-        return self._intern(Op.CONST, Type(len(values)), (), values)
+        return self._intern(_CONST, _OF_SIZE[len(components)], (), tuple(map(float, components)))
 
     def boolean(self, value: bool) -> Expr:
-        return self._intern(Op.CONST, Type.BOOL, (), (float(value),))
+        return self._intern(_CONST, Type.BOOL, (), (float(value),))
 
     def lift(self, value: Operand) -> Expr:
         return value if isinstance(value, Expr) else self.constant(value)
@@ -133,11 +137,11 @@ class FieldGraph:
     def add(self, op: Op, *args: Expr, value: Value = None) -> Expr:
         """The node for `op(args)`, folded or simplified where that is exact."""
         for argument in args:
-            if argument.op is not Op.CONST:
+            if argument.op is not _CONST:
                 simple = simplify(self, op, args, value)
                 return simple or self._intern(op, _result_type(op, args, value), args, value)
         type_ = _result_type(op, args, value)
-        return self._intern(Op.CONST, type_, (), fold(op, [a.numbers for a in args], type_.size, value))
+        return self._intern(_CONST, type_, (), fold(op, [a.numbers for a in args], type_.size, value))
 
     # GLSL's vocabulary, for code that builds formulas
 
@@ -177,19 +181,16 @@ class FieldGraph:
 
 
 def _result_type(op: Op, args: Sequence[Expr], value: Value) -> Type:
-    match op:
-        case Op.VECTOR:
-            return Type(len(args))
-        case Op.SWIZZLE:
-            assert isinstance(value, tuple)
-            return Type(len(value))
-        case Op.DOT | Op.LENGTH:
-            return Type.FLOAT
-        case _ if op in COMPARISON or op in LOGIC:
-            return Type.BOOL
-        case _:
-            first, last = args[-2:] if len(args) > 1 else (args[0], args[0])
-            return first.type if first.type.size >= last.type.size else last.type
+    if op in _RESULT:
+        return _RESULT[op]
+    if op is Op.VECTOR:
+        return _OF_SIZE[len(args)]
+    if op is Op.SWIZZLE:
+        assert isinstance(value, tuple)
+        return _OF_SIZE[len(value)]
+    last = args[-1].type
+    first = args[-2].type if len(args) > 1 else last
+    return first if first.size >= last.size else last
 
 
 def arguments(node: Expr) -> Sequence[Expr]:
@@ -208,16 +209,17 @@ def topological(roots: Iterable[Expr], below: Callable[[Expr], Sequence[Expr]] =
     stack.reverse()
     while stack:
         node = stack[-1]
-        if node.id not in opened:
-            opened.add(node.id)
-            for argument in reversed(below(node)):
-                if argument.id not in done:
-                    stack.append(argument)
-            if stack[-1] is not node:
+        number = node.id
+        if number not in opened:
+            opened.add(number)
+            missing = [a for a in below(node) if a.id not in done]
+            if missing:
+                missing.reverse()
+                stack += missing
                 continue
         stack.pop()
-        if node.id not in done:
-            done.add(node.id)
+        if number not in done:
+            done.add(number)
             yield node
 
 

@@ -14,7 +14,8 @@ def evaluation_order(roots: Iterable[Expr], below: Callable[[Expr], Sequence[Exp
     roots = list(roots)
     need: dict[int, int] = {}
     turned: dict[int, Sequence[Expr]] = {}  # the arguments of a node, where they are better taken in another order
-    for node in topological(roots, below):
+    plain = list(topological(roots, below))
+    for node in plain:
         args = below(node)
         if len(args) < 2:
             need[node.id] = max(1, need[args[0].id]) if args else 0
@@ -24,4 +25,4 @@ def evaluation_order(roots: Iterable[Expr], below: Callable[[Expr], Sequence[Exp
             turned[node.id] = args = sorted(args, key=lambda a: -need[a.id])
             demands.sort(reverse=True)
         need[node.id] = max(len(args), *(demand + held for held, demand in enumerate(demands)))
-    return list(topological(roots, lambda node: turned.get(node.id) or below(node)))
+    return list(topological(roots, lambda node: turned.get(node.id) or below(node))) if turned else plain

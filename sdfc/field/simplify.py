@@ -11,12 +11,16 @@ if TYPE_CHECKING:
     from sdfc.field.graph import Expr, FieldGraph
 
 
+_IN_ORDER = tuple(tuple(range(size)) for size in range(5))
+_CONST, _NEG, _SWIZZLE, _VECTOR = Op.CONST, Op.NEG, Op.SWIZZLE, Op.VECTOR  # looked up once: this is asked often
+
+
 def _is_zero(e: Expr) -> bool:
-    return e.op is Op.CONST and not any(e.numbers)
+    return e.op is _CONST and not any(e.numbers)
 
 
 def _is_all(e: Expr, value: float) -> bool:
-    return e.op is Op.CONST and e.type is not Type.BOOL and all(v == value for v in e.numbers)
+    return e.op is _CONST and e.type is not Type.BOOL and e.numbers.count(value) == len(e.numbers)
 
 
 def _zeros(graph: FieldGraph, *like: Expr) -> Expr:
@@ -26,9 +30,9 @@ def _zeros(graph: FieldGraph, *like: Expr) -> Expr:
 def simplify(graph: FieldGraph, op: Op, args: tuple[Expr, ...], value: object) -> Expr | None:
     """An equal, simpler node, or None. Only rewrites that are exact in real arithmetic for finite values."""
     rule = _SIMPLIFY.get(op)
-    if op is Op.SWIZZLE:
+    if op is _SWIZZLE:
         assert isinstance(value, tuple)
-        return _simplify_swizzle(graph, args[0], tuple(int(i) for i in value))
+        return _simplify_swizzle(graph, args[0], value)
     return rule(graph, *args) if rule is not None else None
 
 
@@ -37,7 +41,7 @@ def _simplify_add(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
         return a
     if _is_zero(a) and b.type.size >= a.type.size:
         return b
-    return graph.add(Op.SUB, a, b.args[0]) if b.op is Op.NEG else None
+    return graph.add(Op.SUB, a, b.args[0]) if b.op is _NEG else None
 
 
 def _simplify_sub(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
@@ -47,17 +51,18 @@ def _simplify_sub(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
         return graph.add(Op.NEG, b)
     if a is b:
         return _zeros(graph, a)
-    return graph.add(Op.ADD, a, b.args[0]) if b.op is Op.NEG else None
+    return graph.add(Op.ADD, a, b.args[0]) if b.op is _NEG else None
 
 
 def _simplify_mul(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
     if _is_zero(a) or _is_zero(b):
         return _zeros(graph, a, b)
     for factor, other in ((b, a), (a, b)):
-        if other.type.size >= factor.type.size and _is_all(factor, 1.0):
-            return other
-        if other.type.size >= factor.type.size and _is_all(factor, -1.0):
-            return graph.add(Op.NEG, other)
+        if factor.op is _CONST and other.type.size >= factor.type.size:
+            if _is_all(factor, 1.0):
+                return other
+            if _is_all(factor, -1.0):
+                return graph.add(_NEG, other)
     return None
 
 
@@ -117,12 +122,12 @@ def _simplify_select(graph: FieldGraph, condition: Expr, a: Expr, b: Expr) -> Ex
 
 
 def _simplify_swizzle(graph: FieldGraph, a: Expr, indices: tuple[int, ...]) -> Expr | None:
-    if indices == tuple(range(a.type.size)):
+    if indices == _IN_ORDER[a.type.size]:
         return a
-    if a.op is Op.VECTOR:
+    if a.op is _VECTOR:
         picked = [a.args[i] for i in indices]
         return picked[0] if len(picked) == 1 else graph.add(Op.VECTOR, *picked)
-    if a.op is Op.SWIZZLE:
+    if a.op is _SWIZZLE:
         assert isinstance(a.value, tuple)
         return graph.swizzle(a.args[0], tuple(int(a.value[i]) for i in indices))
     return None
@@ -130,10 +135,10 @@ def _simplify_swizzle(graph: FieldGraph, a: Expr, indices: tuple[int, ...]) -> E
 
 def _simplify_vector(graph: FieldGraph, *args: Expr) -> Expr | None:
     """vec3(v.x, v.y, v.z) is v."""
-    whole = args[0].args[0] if args[0].op is Op.SWIZZLE else None
+    whole = args[0].args[0] if args[0].op is _SWIZZLE else None
     if whole is None or whole.type.size != len(args):
         return None
-    in_order = all(a.op is Op.SWIZZLE and a.args[0] is whole and a.value == (i,) for i, a in enumerate(args))
+    in_order = all(a.op is _SWIZZLE and a.args[0] is whole and a.value == (i,) for i, a in enumerate(args))
     return whole if in_order else None
 
 

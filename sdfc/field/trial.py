@@ -57,6 +57,19 @@ class Trial:
         self._params = params
         self._near = Evaluator([value, gradient(value, self._p)])
 
+    def steepness(self) -> float:
+        """The gradient's length where rays first meet the surface, of most of them; infinite where none does."""
+        rays, which = self._rays, np.arange(RAYS)
+        length = rays.last - rays.first
+        met = np.full(RAYS, np.nan)
+        for share in np.linspace(0.0, 1.0, 4 * _PIECES):
+            t = rays.first + share * length
+            value, slope = self._near(rays.at(t, which), self._params)
+            steep = np.linalg.norm(np.broadcast_to(slope, (3, RAYS)), axis=0)
+            met = np.where(np.isnan(met) & (np.broadcast_to(value, (RAYS,)) <= 0.0), steep, met)
+        met = met[np.isfinite(met)]
+        return float(np.median(met)) if met.size else np.inf
+
     def balls(self, lipschitz: float) -> float:
         """Mean steps of a ray by empty balls."""
         evaluate = Evaluator([self._value])

@@ -15,16 +15,17 @@ from sdfc.glsl.distance import DistanceWriter
 from sdfc.glsl.expression import literal, print_function, type_name
 from sdfc.glsl.functions import Functions
 from sdfc.glsl.light import LightWriter
-from sdfc.glsl.live import Live
+from sdfc.glsl.live import Done, Live
 from sdfc.glsl.many import ManyWriter
-from sdfc.glsl.names import identifier, param_name
+from sdfc.glsl.names import param_name
 from sdfc.glsl.proven import ProvenWriter, TraceText
 from sdfc.glsl.source import Item, joined, parse, pruned
 from sdfc.glsl.span import SpanWriter
 from sdfc.glsl.surface import SurfaceWriter
 from sdfc.plan.plan import CUT, FINE, GROW, HORIZON, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, TILE, Plan
 from sdfc.plan.setting import Setting
-from sdfc.plan.steps import is_finite
+from sdfc.plan.steps import Step, is_finite
+from sdfc.plan.view import uniform_name
 from sdfc.scene.model import Param
 from sdfc.shade.ambient import OCCLUSION_HEIGHTS
 from sdfc.shade.functions import FUNCTIONS
@@ -43,6 +44,8 @@ class Variable:
 
 
 VERSION = "450 core"
+WEB_VERSION = "300 es"
+_ALONE = ("picture", "inspect")  # entries whose camera is in uniforms
 _MARK = "\x1f"  # before and after the library in a text that is not finished
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _COMMENT = re.compile(r"//[^\n]*")
@@ -66,6 +69,12 @@ def environment() -> Environment:
 def assemble(graph: FieldGraph, plan: Plan, setting: Setting, entry: str, stage: str) -> str:
     """One complete shader. `entry` is picture, radiance, probe or depth; `stage` fragment, or compute for a picture."""
     return Assembly(graph, plan, setting, entry).text(stage)
+
+
+def assemble_for_web(graph: FieldGraph, plan: Plan, setting: Setting, entry: str) -> str:
+    """One complete fragment shader for WebGL 2. `entry`: picture, or inspect, whose `shown` chooses the view."""
+    version, rest = Assembly(graph, plan, setting, entry).text("fragment", WEB_VERSION).split("\n", 1)
+    return "\n".join([version, "precision highp float;", "precision highp int;", rest])
 
 
 def calibration_shaders() -> dict[str, str]:
@@ -96,13 +105,13 @@ class Assembly:
         self._has_surface = entry not in ("depth", "cone", "field")
         self._has_field = entry in ("field", "tracer")  # parts of shaders: sdfc/glsl/emission
         # a shader that stands alone has nobody to sweep for it
-        self._prepass = plan.prepass and entry not in ("cone", "picture")
+        self._prepass = plan.prepass and entry not in ("cone", *_ALONE)
 
-    def text(self, stage: str) -> str:
+    def text(self, stage: str, version: str = VERSION) -> str:
         suffix = {"fragment": "frag", "compute": "comp"}[stage]
         template = environment().get_template(f"entry/{self._entry}.{suffix}")
         context = self._context() | self._camera(stage)
-        context["mark"] = _MARK
+        context |= {"mark": _MARK, "version": version}
         text = template.render(context)
         params = _read(self._params(), text)
         if len(params) < len(self._setting.params):
@@ -116,10 +125,7 @@ class Assembly:
         many = ManyWriter(self._graph, self._functions, self._live, plan.materials, plan.rows_at_once)
         if tracer.needs_steps and not self._is_cone:
             trace = ProvenWriter(self._graph, self._functions, self._live, many).write(plan.root)
-        traced = tracer.needs_map or self._is_cone or self._has_field
-        has_map = traced or self._lit
-        distance = DistanceWriter(self._graph, self._functions, self._live, plan.slopes, many, traced)
-        map_text = distance.write(plan.swept if self._is_cone else plan.root) if has_map else ""
+        map_text, occluder = self._maps(many)
         spans = SpanWriter(self._graph, self._functions, self._live, plan.slopes, many)
         span_text = spans.write(plan.root) if tracer.needs_span and not self._is_cone else ""
         recorded = many if tracer.needs_steps else None
@@ -144,6 +150,7 @@ class Assembly:
             "needs_marching": trace.march or (tracer.needs_map and not self._is_cone) or bool(many.tables),
             "needs_map_library": "within(" in map_text or "box_distance" in map_text,
             "map": map_text,
+            "occluder": occluder,
             "map_span": span_text,
             "tables": "\n".join(many.tables),
             "trace": trace,
@@ -163,9 +170,27 @@ class Assembly:
         context["live_lines"] = self._live_lines()
         return context
 
+    def _maps(self, many: ManyWriter) -> tuple[str, str]:
+        """The distances that are asked for, and the name of the one that tells how open the sky is."""
+        plan = self._plan
+        texts: dict[str, str] = {}
+
+        def write(root: Step, name: str, traced: bool) -> None:
+            writer = DistanceWriter(self._graph, self._functions, self._live, plan.slopes, many, traced)
+            texts[name] = writer.write(root, name)
+
+        if plan.tracer.needs_map or self._is_cone or self._has_field:
+            write(plan.swept if self._is_cone else plan.root, "map", True)
+        if not self._lit or plan.is_convex:
+            return "".join(texts.values()), ""
+        write(plan.root, "openness_map" if texts else "map", False)
+        if texts.get("openness_map") == texts["map"].replace("float map(", "float openness_map("):
+            del texts["openness_map"]
+        return "\n".join(texts.values()), [*texts][-1]
+
     def _camera(self, stage: str) -> dict[str, object]:
         """A shader that stands alone reads its camera from uniforms; ours come with a vertex stage that is cheaper."""
-        kind = {"picture": "uniform", "cone": "tile"}.get(self._entry, "varying")
+        kind = "uniform" if self._entry in _ALONE else "tile" if self._is_cone else "varying"
         return {
             "camera_template": f"lib/camera_{kind}.glsl",
             "pixel_centre": "gl_FragCoord.xy" if stage == "fragment" else "vec2(gl_GlobalInvocationID.xy) + 0.5",
@@ -176,8 +201,8 @@ class Assembly:
         lights, suns = writer.lights(self._setting.lights), writer.suns(self._setting.lights)
         transmission = properties["transmission"] not in ("0.0", "0")
         needed = {"sky_radiance": True, "sun_disc": bool(suns), "reflect_light": bool(lights)}
-        needed |= {"point_falloff": len(suns) < len(lights), "occlusion_weight": True, "ambient": True}
-        needed |= {"transmit": transmission}
+        needed |= {"point_falloff": len(suns) < len(lights), "occlusion_weight": not self._plan.is_convex}
+        needed |= {"ambient": True, "transmit": transmission}
         needed |= dict.fromkeys(("tone_map", "encode_srgb"), self._entry == "picture")
         functions = [print_function(FUNCTIONS[name](self._graph), name) for name, wanted in needed.items() if wanted]
         return {
@@ -185,6 +210,8 @@ class Assembly:
             "up": _vector(self._setting.up),
             "sky": writer.sky(self._setting.sky),
             "lights": lights,
+            "shadows": [] if self._plan.is_convex else lights,
+            "is_convex": self._plan.is_convex,
             "suns": suns,
             "occlusion_heights": f"vec4({', '.join(literal(h * self._setting.reach) for h in OCCLUSION_HEIGHTS)})",
             "transmission": transmission,
@@ -192,7 +219,7 @@ class Assembly:
 
     def _most_steps(self) -> int:
         """So many marching steps a ray that all loops of an invocation stay below llvmpipe's silent limit."""
-        rays = 1 + (len(self._setting.lights) if self._lit else 0)
+        rays = 1 + (len(self._setting.lights) if self._lit and not self._plan.is_convex else 0)
         taps = 4 if self._lit else 0
         free = (MOST_LOOPS - (rays + taps) * self._plan.table_turns) // rays - 2 * self._plan.events
         return max(16, min(2048, free)) if self._plan.budget is None else min(self._plan.budget, max(16, free))
@@ -216,7 +243,7 @@ class Assembly:
         lines: list[str] = []
         done: dict[int, str] = {}
         for name, expr in self._live.values:
-            body = Body(lambda e: done.get(e.id), 0)
+            body = Body(Done(done), 0)
             text = body.text(expr)
             scoped = [*body.lines, f"{name} = {text};"]
             lines += scoped if len(scoped) == 1 else ["{", *(f"    {line}" for line in scoped), "}"]
@@ -240,11 +267,6 @@ def _items(library: str) -> list[Item]:
 def _read(params: list[Variable], text: str) -> list[Variable]:
     """The params that a shader reads: those named there besides their declaration and the line that sets them."""
     return [p for p in params if len(re.findall(rf"\b{p.name}\b", text)) > 2]
-
-
-def uniform_name(param: Param) -> str:
-    """The uniform that carries a param."""
-    return identifier(f"set_{param.name}")
 
 
 def _range(param: Param) -> str:

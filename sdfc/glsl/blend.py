@@ -75,7 +75,11 @@ class BlendWriter:
         head = f"float {name}_ahead(float tau, {formal}) {{"
         doc = "// the blend of the operands' lines, tau ahead: concave in tau, and never above the field"
         self.texts.append("\n".join([doc, head, *body.lines, "}", ""]))
-        self.texts.append(_CLEAR.format(name=name, formal=formal, actual=actual))
+        steeper = " ".join(f"v_{part.name}.y -= 2.4e-7;" for part in parts)
+        root = f"line_root(v_{parts[0].name}, level)"
+        for part in parts[1:]:
+            root = f"min({root}, line_root(v_{part.name}, level))"
+        self.texts.append(_CLEAR.format(name=name, formal=formal, actual=actual, steeper=steeper, root=root))
 
     def _tree(self, tree: BlendTree, body: Body) -> str:
         match tree:
@@ -97,9 +101,11 @@ class BlendWriter:
                 assert_never(tree)
 
 
-# Two bounds close in on the root of the concave function: a chord crosses before it, the line through two points on
-# the left crosses after it. The left one is proven (what puts its value below the level is rounding), and is the step.
-# Three rounds, written out: LLVM's time doubles with every loop of a shader (measured on llvmpipe).
+# The root lies before that of the first operand's line. Up to there the blend is concave: a kernel that is carried on
+# below 0 less steeply (`round`) is not, beyond. Two bounds close in on the root: a chord crosses before it, the line
+# through two points on the left crosses after it. The left one is proven, but for rounding, and is the step. In a blend
+# of blends an operand may pass 0 before its lines do: a chord that comes down too far is one more bound on the right.
+# Two rounds, written out: LLVM's time doubles with every loop of a shader (measured on llvmpipe).
 _CLEAR = """// where the blend of the operands' lines comes down to `level`: left and right of it, and their values
 void {name}_closer(inout vec4 bracket, float level, {formal}) {{
     if (bracket.w > 0.0) return;  // the right end is left of the root by rounding: there is nothing to gain
@@ -109,13 +115,15 @@ void {name}_closer(inout vec4 bracket, float level, {formal}) {{
     float beyond = chord + (chord - left) * at_chord / max(left_value - at_chord, 1e-30);
     bool closer = at_chord > 0.0 && left_value > at_chord && beyond < bracket.y;
     float right = closer ? beyond : bracket.y;
-    bracket = vec4(chord, right, max(at_chord, 0.0), closer ? {name}_ahead(right, {actual}) - level : bracket.w);
+    float right_value = closer ? {name}_ahead(right, {actual}) - level : bracket.w;
+    bool over = at_chord < -1e-6 * (1.0 + left_value);
+    bracket = over ? vec4(left, chord, left_value, at_chord) : vec4(chord, right, max(at_chord, 0.0), right_value);
 }}
 float {name}_clear(float value, float level, {formal}) {{
-    vec4 bracket = vec4(0.0, 4.0 * (value - level) + 1.0, value - level, 0.0);
+    {steeper}  // no line falls less than its slope may be off by
+    vec4 bracket = vec4(0.0, {root}, value - level, 0.0);
     bracket.w = {name}_ahead(bracket.y, {actual}) - level;
     if (bracket.w > 0.0) return bracket.y;
-    {name}_closer(bracket, level, {actual});
     {name}_closer(bracket, level, {actual});
     {name}_closer(bracket, level, {actual});
     return bracket.x * 0.9999996;

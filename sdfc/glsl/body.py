@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from sdfc.diagnostics import Span
 from sdfc.field.graph import LEAVES, Expr, Type
-from sdfc.glsl.expression import Printer, type_name
+from sdfc.glsl.expression import Printer, local_name, type_name
 from sdfc.glsl.functions import Call
+from sdfc.glsl.live import Values
 from sdfc.glsl.names import LOCALS, Names
 from sdfc.shape.matrix import Matrix
 
@@ -21,9 +22,9 @@ def place(span: Span) -> str:
 class Body:
     """Statements. A point in a part's own space is computed once, where the first part needs it."""
 
-    def __init__(self, live: Callable[[Expr], str | None], indent: int = 1) -> None:
+    def __init__(self, live: Values, indent: int = 1) -> None:
         self.lines: list[str] = []
-        self._live: Callable[[Expr], str | None] = live
+        self._live = live
         self._indent = indent
         self._local: dict[int, str] = {}
         self._once: set[str] = set()
@@ -31,7 +32,17 @@ class Body:
         self._printer = Printer(self._name, self._scope)
 
     def _name(self, expr: Expr) -> str | None:
+        if expr.id not in self._local and self._live.is_shared(expr):
+            self._share(expr)
         return self._local.get(expr.id) or self._live(expr)
+
+    def _share(self, expr: Expr) -> None:
+        """A local of the value, under a name of its own kind."""
+        printer = Printer(lambda e: None if e is expr else self._name(e), self._scope)
+        lines, (text,) = printer.statements([expr])
+        self._local[expr.id] = self._scope.fresh(local_name(expr))
+        for line in (*lines, f"{type_name(expr.type)} {self._local[expr.id]} = {text};"):
+            self.add(line)
 
     def text(self, value: Expr) -> str:
         """The text of an expression, after the statements that it needs."""

@@ -86,30 +86,16 @@ _EXACT_NEGATION = {Op.ADD: " - ", Op.SUB: " + "}
 
 def compose(node: Expr, text_of: Lookup) -> Text:
     """The GLSL of a node; the texts of its arguments are asked of `text_of`."""
-    depth = 1 + max((text_of(a).depth for a in node.args), default=-1)
-    match node.op:
-        case Op.CONST:
-            return constant(node.type, node.numbers)
-        case Op.INPUT:
-            return Text(identifier(str(node.value)), is_name=True)
-        case Op.PARAM:
-            return Text(param_name(str(node.value)), is_name=True)
-        case Op.VECTOR:
-            return _vector(node, text_of, depth)
-        case Op.SWIZZLE:
-            return _swizzle(node, text_of, depth)
-        case Op.NEG:
-            return _negation(text_of(node.args[0]), depth)
-        case Op.NOT:
-            return Text(f"!{text_of(node.args[0]).within(Level.UNARY)}", Level.UNARY, depth)
-        case Op.ROUND:
-            return Text(f"floor({text_of(node.args[0]).leading(Level.SUM)} + 0.5)", depth=depth)
-        case Op.SELECT:
-            return _choice(node, text_of, depth)
-        case _ if node.op in _INFIX:
-            return _infix(node, text_of, depth)
-        case _:
-            return _call(node, text_of, depth)
+    if not node.args:
+        return _leaf(node)
+    depth = 1 + max([text_of(a).depth for a in node.args])
+    return _WRITERS.get(node.op, _call)(node, text_of, depth)
+
+
+def _leaf(node: Expr) -> Text:
+    if node.is_constant:
+        return constant(node.type, node.numbers)
+    return Text((identifier if node.op is Op.INPUT else param_name)(str(node.value)), is_name=True)
 
 
 def constant(type_: Type, numbers: Sequence[float]) -> Text:
@@ -194,7 +180,16 @@ def _swizzle(node: Expr, text_of: Lookup, depth: int) -> Text:
     return Text(f"{base.within(Level.ATOM)}.{_letters(node)}", depth=base.depth, is_name=base.is_name)
 
 
-def _negation(operand: Text, depth: int) -> Text:
+def _not(node: Expr, text_of: Lookup, depth: int) -> Text:
+    return Text(f"!{text_of(node.args[0]).within(Level.UNARY)}", Level.UNARY, depth)
+
+
+def _rounded(node: Expr, text_of: Lookup, depth: int) -> Text:
+    return Text(f"floor({text_of(node.args[0]).leading(Level.SUM)} + 0.5)", depth=depth)
+
+
+def _negation(node: Expr, text_of: Lookup, depth: int) -> Text:
+    operand = text_of(node.args[0])
     # -a * b is (-a) * b, which rounds as -(a * b) does
     if operand.level >= Level.PRODUCT and not operand.text.startswith("-"):
         return Text(f"-{operand.text}", min(operand.level, Level.UNARY), depth)
@@ -232,3 +227,14 @@ def _call(node: Expr, text_of: Lookup, depth: int) -> Text:
     else:
         texts = [text_of(a).text for a in args]
     return Text(f"{_CALLS[node.op]}({', '.join(texts)})", depth=depth)
+
+
+_WRITERS: dict[Op, Callable[[Expr, Lookup, int], Text]] = {  # of the others: _call
+    Op.VECTOR: _vector,
+    Op.SWIZZLE: _swizzle,
+    Op.NEG: _negation,
+    Op.NOT: _not,
+    Op.ROUND: _rounded,
+    Op.SELECT: _choice,
+    **dict.fromkeys(_INFIX, _infix),
+}

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import assert_never
 
-from sdfc.diagnostics import Span
 from sdfc.field.graph import FieldGraph
 from sdfc.glsl.body import Body, own_point
 from sdfc.glsl.expression import literal
+from sdfc.glsl.fold import Fold, Operations
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
-from sdfc.plan.steps import All, Any, Ball, Blend, Chord, Closed, Many, Part, Step, Tangent, Within, may_flatten
+from sdfc.plan.steps import Many, Part, Step, Within, may_flatten
 
 
 class DistanceWriter:
@@ -37,46 +36,13 @@ class DistanceWriter:
         self._many = many
         self._traced = traced
         self._slopes = slopes  # the Lipschitz constant of each part's formula, by id
-        self._count = 0
 
-    def write(self, root: Step) -> str:
+    def write(self, root: Step, name: str = "map") -> str:
         body = Body(self._live)
-        result = self._fold(root, body)
+        operations = Operations("float", "FAR", "min", "max", self._value, self._least, self._within)
+        result = Fold(operations).text(root, body)
         body.add(f"return {result};")
-        return "\n".join(["float map(vec3 p) {", *body.lines, "}", ""])
-
-    def _fold(self, step: Step, body: Body) -> str:
-        match step:
-            case Closed() | Ball():
-                return self._value(step.part, body, step.inside)
-            case Tangent() | Blend():
-                return self._value(step.part, body, True)
-            case Many():
-                self._count += 1
-                self._many.value(step, body, f"d{self._count}")
-                return f"d{self._count}"
-            case Chord():
-                return self._value(step.part, body, False)
-            case Within():
-                return self._within(step, body) if step.is_needed else self._bounded(step, body)
-            case Any():
-                return self._joined("min", step.steps, body)
-            case All():
-                return self._joined("max", step.steps, body)
-            case _:
-                assert_never(step)
-
-    def _joined(self, operation: str, steps: tuple[Step, ...], body: Body) -> str:
-        if not steps:
-            return "FAR"
-        self._count += 1
-        name = f"d{self._count}"
-        first = self._fold(steps[0], body)
-        body.add(f"float {name} = {first};", _span(steps[0]))
-        for step in steps[1:]:
-            text = self._fold(step, body)
-            body.add(f"{name} = {operation}({name}, {text});", _span(step))
-        return name
+        return "\n".join([f"float {name}(vec3 p) {{", *body.lines, "}", ""])
 
     def _value(self, part: Part, body: Body, inside: bool) -> str:
         if not math.isfinite(self._slopes[id(part)]):
@@ -88,30 +54,24 @@ class DistanceWriter:
             text = f"{body.text(scale)} * {text}"
         return text if inside else f"-{text}" if "*" not in text else f"-({text})"
 
-    def _within(self, step: Within, body: Body) -> str:
-        """Outside its box a part's own value may mean nothing: there the distance to the box is the bound."""
-        inner = self._fold(step.step, body)
+    def _least(self, step: Many, body: Body, name: str) -> str:
+        self._many.value(step, body, name)
+        return name
+
+    def _within(self, step: Within, inner: str) -> str:
+        """Outside its box a part's own value may mean nothing: there the distance to the box is the bound.
+
+        Where it holds everywhere but may be small far away, it is traced by the greater of two bounds.
+        """
+        if not step.is_needed:
+            is_bounded = self._traced and may_flatten(step)
+            return f"max({inner}, box_distance({_place(step)}))" if is_bounded else inner
         margin = literal(1e-3 * step.box.radius)
         outside = "box_distance" if self._traced else "far_outside"
         return f"within({outside}({_place(step)}), {inner}, {margin})"
-
-    def _bounded(self, step: Within, body: Body) -> str:
-        """A value that holds everywhere, but may be small far away: to trace by it, the greater of two bounds."""
-        inner = self._fold(step.step, body)
-        return f"max({inner}, box_distance({_place(step)}))" if self._traced and may_flatten(step) else inner
 
 
 def _place(step: Within) -> str:
     centre = ", ".join(literal(c) for c in step.box.centre)
     half = ", ".join(literal(h) for h in step.box.half)
     return f"p - vec3({centre}), vec3({half})"
-
-
-def _span(step: Step) -> Span | None:
-    match step:
-        case Closed() | Tangent() | Chord() | Ball() | Blend():
-            return step.part.span
-        case Within() | Any() | All() | Many():
-            return None
-        case _:
-            assert_never(step)

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from sdfc.field.function import Function
 from sdfc.field.graph import FieldGraph
-from sdfc.glsl.assembly import Assembly, environment, uniform_name
+from sdfc.glsl.assembly import Assembly, environment
 from sdfc.glsl.expression import literal, print_function, type_name
+from sdfc.glsl.functions import Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.manual import description, header
 from sdfc.glsl.names import Names, param_name
@@ -18,6 +20,7 @@ from sdfc.glsl.targets import TARGETS
 from sdfc.glsl.targets.record import Brief, Control, Eye, Numbers, Part, Target, Vector
 from sdfc.plan.plan import Plan
 from sdfc.plan.setting import Setting
+from sdfc.plan.view import uniform_name
 
 _ENTRY: Mapping[Part, str] = {"field": "field", "tracer": "tracer", "full": "picture"}
 _FIELD = ("sdf", "gradient", "material", "properties")
@@ -107,11 +110,10 @@ class _Emission(Assembly):
         context |= {"part": self._part, "is_whole": is_whole and self._part == "field", "own_p": own_p}
         slopes = self._plan.slopes
         nearest = NearestWriter(self._graph, self._functions, self._live, self._plan.materials, slopes)
-        context["nearest"] = written = nearest.write(self._plan.root)
-        context["nearest_values"] = _values(written.properties)
+        context["nearest"] = nearest.written(self._plan.root)
         surface = context["surface"]
         context["surface_values"] = _values(getattr(surface, "properties", {}))
-        context["functions"] = "\n".join(print_function(f) for f in self._functions.all)
+        context["functions"] = "\n".join(print_function(_described(f)) for f in self._functions.all)
         return context
 
     def _places(self) -> dict[str, object]:
@@ -189,7 +191,7 @@ class _Emission(Assembly):
     def _short(self, name: str) -> str:
         if self._part == "full":
             return name
-        return _OWN.get(name, name.removeprefix("param_"))
+        return _OWN.get(name, name.removeprefix("param_").replace(Role.DISTANCE_SURFACE.value, "_gradient"))
 
     # the file
 
@@ -235,6 +237,12 @@ class _Emission(Assembly):
             context["description"] = description(brief, self._sources()) if self._target.is_description else {}
             return environment().get_template(page).render(context)
         return "\n".join([*version, *(f"// {line}".rstrip() for line in lines), "", text])
+
+
+def _described(function: Function) -> Function:
+    """What a formula is, is said where it is; here only what else there is of it."""
+    is_gradient = function.name.endswith(Role.DISTANCE_SURFACE.value)
+    return replace(function, doc="Its gradient, and its value.") if is_gradient else function
 
 
 def _values(properties: Mapping[str, str]) -> str:

@@ -47,11 +47,17 @@ def print_function(function: Function, name: str | None = None) -> str:
     return "\n".join([*doc, head, *body, "}"]) + "\n"
 
 
+_EXTREMES = frozenset({Op.MIN, Op.MAX})
 _NOTHING: Mapping[Expr, str] = MappingProxyType({})
 
 
 def _no_names(_: Expr) -> None:
     """Nothing has a name yet."""
+
+
+def local_name(node: Expr) -> str:
+    """What a local that holds the node's value is called, but for a number behind it."""
+    return "q" if node.type.size > 1 else _LOCAL_NAMES[node.op]
 
 
 class Printer:
@@ -87,7 +93,8 @@ class _Block:
         self._called = called
         self._scope = scope
         self._texts: dict[int, Text] = {}
-        self._name_leaves(names, roots)
+        if self._name_leaves(names, roots):
+            return
         order = evaluation_order(roots, self._below)
         self._uses = _count_uses(order, roots)
         self._spine = _spines(order, self._uses, self._texts)
@@ -99,8 +106,8 @@ class _Block:
     def text_of(self, node: Expr) -> Text:
         return self._texts[node.id]
 
-    def _name_leaves(self, names: NamesOf, roots: Sequence[Expr]) -> None:
-        """Before any local is named: the texts of what is there already."""
+    def _name_leaves(self, names: NamesOf, roots: Sequence[Expr]) -> bool:
+        """Before any local is named: the texts of what is there already. Whether that is all there is to print."""
 
         def below(node: Expr) -> Sequence[Expr]:
             given = names(node)
@@ -114,6 +121,7 @@ class _Block:
                 self._texts[node.id] = compose(node, self.text_of)
             if node.id in self._texts and node.op is not Op.CONST:
                 self._scope.reserve(self._texts[node.id].text.partition(".")[0])
+        return all(root.id in self._texts for root in roots)
 
     def _below(self, node: Expr) -> Sequence[Expr]:
         return () if node.id in self._texts else node.args
@@ -163,8 +171,7 @@ class _Block:
         self._texts[node.id] = Text(self._local(node, self._texts[node.id].text), is_name=True)
 
     def _local(self, node: Expr, text: str) -> str:
-        usual = "q" if node.type.size > 1 else _LOCAL_NAMES[node.op]
-        name = self._scope.fresh(self._called.get(node, usual))
+        name = self._scope.fresh(self._called.get(node) or local_name(node))
         self.lines.append(f"{type_name(node.type)} {name} = {text};")
         return name
 
@@ -238,7 +245,7 @@ def _spines(order: Sequence[Expr], uses: dict[int, int], named: dict[int, Text])
     before: dict[int, Expr | None] = {}
     inner_steps: set[int] = set()
     for node in order:
-        if node.op not in (Op.MIN, Op.MAX) or node.id in named or clamp_limits(node) is not None:
+        if node.op not in _EXTREMES or node.id in named or clamp_limits(node) is not None:
             continue
         steps = [a for a in node.args if a.id in length and uses[a.id] == 1 and a.type is node.type]
         longest = max(steps, key=lambda a: length[a.id], default=None)

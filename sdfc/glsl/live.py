@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Protocol
+
 from sdfc.field.graph import Expr, Op, topological
 
 _CONSTANTS = frozenset({"GROW", "CUT"})  # the templates' own, where generated calls read them
@@ -11,11 +14,34 @@ _COSTLY = frozenset(
 )
 
 
+class Values(Protocol):
+    """What is known of values where a body is written."""
+
+    def __call__(self, expr: Expr) -> str | None:
+        """The name of what holds the value, or None."""
+
+    def is_shared(self, expr: Expr) -> bool:
+        """Whether it is to be a local of the body, for all that follows."""
+
+
+class Done:
+    """Values that are there: names by their expressions' ids."""
+
+    def __init__(self, names: Mapping[int, str]) -> None:
+        self._names = names
+
+    def __call__(self, expr: Expr) -> str | None:
+        return self._names.get(expr.id)
+
+    def is_shared(self, expr: Expr) -> bool:
+        return False
+
+
 class Live:
     """Names for expressions over params alone. The params themselves are globals too, copied from their uniforms."""
 
     def __init__(self, hoists: bool = True) -> None:
-        self.hoists = hoists  # not where there is no main to begin with: they stay where they are used
+        self.hoists = hoists  # not where there is no main to begin with: then they are locals of the functions
         self._names: dict[int, str] = {}
         self._kind: dict[int, bool] = {}
         self.values: list[tuple[str, Expr]] = []
@@ -32,6 +58,10 @@ class Live:
             self._names[expr.id] = f"live_{len(self.values) + 1}"
             self.values.append((self._names[expr.id], expr))
         return self._names[expr.id]
+
+    def is_shared(self, expr: Expr) -> bool:
+        """See Values: without a main, the sine of a param is taken once in a function, not once for each part."""
+        return not self.hoists and expr.op in _COSTLY and self._is_live(expr)
 
     def _is_costly(self, expr: Expr) -> bool:
         """Whether a global, and the register that it keeps, is worth it: a product or a sum is not."""

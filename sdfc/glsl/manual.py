@@ -72,20 +72,11 @@ def _sure(brief: Brief) -> list[str]:
 def description(brief: Brief, sources: Mapping[str, Mapping[str, str]]) -> dict[str, Any]:
     """All of it for programs. `sources` by target and stage."""
     eye = brief.eye
-    p = brief.prefix
-    functions = {
-        "sdf": f"float {p}_sdf(vec3 p)",
-        "gradient": f"vec3 {p}_gradient(vec3 p)",
-        "material": f"int {p}_material(vec3 p)",
-        "properties": f"{p}_Properties {p}_properties(vec3 p)",
-    }
-    if brief.part == "tracer":
-        functions["trace"] = f"{p}_hit {p}_trace(vec3 origin, vec3 direction, float tmin, float tmax)"
     return {
         "made_by": "sdfc",
         "scene": brief.title,
         "part": brief.part,
-        "prefix": p,
+        "prefix": brief.prefix,
         "unit": "the scene's own; angles in radians, colours linear",
         "up": list(brief.up),
         "bounds": {"low": list(brief.low), "high": list(brief.high), "holds_everything": brief.is_finite},
@@ -113,9 +104,28 @@ def description(brief: Brief, sources: Mapping[str, Mapping[str, str]]) -> dict[
             }
             for c in brief.controls
         ],
-        "functions": functions if brief.part != "full" else {},
+        "functions": _signatures(brief),
         "sources": {target: dict(stages) for target, stages in sources.items()},
     }
+
+
+def _signatures(brief: Brief) -> dict[str, str]:
+    """The functions that a shader of yours calls; a whole shader has none."""
+    p = brief.prefix
+    functions = {
+        "sdf": f"float {p}_sdf(vec3 p)",
+        "gradient": f"vec3 {p}_gradient(vec3 p)",
+        "material": f"int {p}_material(vec3 p)",
+        "properties": f"{p}_Properties {p}_properties(vec3 p)",
+    }
+    trace = {"trace": f"{p}_hit {p}_trace(vec3 origin, vec3 direction, float tmin, float tmax)"}
+    match brief.part:
+        case "full":
+            return {}
+        case "tracer":
+            return functions | trace
+        case _:
+            return functions
 
 
 def numbers(values: Sequence[float]) -> str:

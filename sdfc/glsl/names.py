@@ -4,6 +4,7 @@ import math
 import re
 import struct
 from collections.abc import Iterable
+from functools import lru_cache
 
 from sdfc.diagnostics import InternalError
 from sdfc.field.operations import Type
@@ -47,17 +48,17 @@ unpackSnorm2x16 unpackSnorm4x8 unpackUnorm2x16 unpackUnorm4x8 usubBorrow
 
 # What our own templates and generated functions define (a test compares this list with the templates).
 _TEMPLATES = """
-BOX_HIGH BOX_LOW Bracket CENTRE CUT EYE FAR Found GROW HALF_VIEW MOST_CONE_STEPS MOST_STEPS Nearest Properties RADIUS
-State Surface TARGET TILE UP VERTICAL ambient axis_x axis_y axis_z ball blended blended_of both box_distance
-box_distance_span box_interval bracket camera_ray chord chord_reach clearance cleared clip_from_scene color_out cone
-depth_row direction_out encode_srgb enter entry evaluations events eye far_outside far_point farther farther_of
-first_out gone gradient haste iMouse iResolution iTime inside leave light_at look look_up_tile mainImage map map_span
-march material meeting narrowed near_point nearer nearer_of nearest normal_out occlusion_weight openness origin_out
-own own_tolerance painted_as parabola picture piece pixel pixel_centre point_falloff position_out prepare properties
-radiance radiance_out ray_ahead ray_cone ray_origin rebase reflect_light rounding scene_from_clip sdf sky sky_radiance
-span_complement span_hull span_intersection span_union span_within start_out start_state steps sun_disc
-sunk_parabola surface tangent tile_ray tolerance tone_map trace trace_pixel trace_ray transmit travelled turned
-unfinished weight_row window within
+BEYOND BOX_HIGH BOX_LOW Bracket CENTRE CUT EYE FAR Found GROW HALF_VIEW MANY_STEPS MOST_CONE_STEPS MOST_STEPS Nearest
+Properties RADIUS State Surface TARGET TILE UP VERTICAL ambient axis_x axis_y axis_z ball blended blended_of both
+box_distance box_distance_span box_interval bracket camera_ray chord chord_reach clearance cleared clip_from_scene
+color_out cone depth_row direction_out distinct encode_srgb enter entry evaluations events eye far_outside far_point
+farther farther_of first_out gone gradient haste heat iMouse iResolution iTime inside leave light_at look look_up_tile
+mainImage map map_span march material meeting narrowed near_point nearer nearer_of nearest normal_out occlusion_weight
+openness openness_map origin_out own own_tolerance painted_as parabola picture piece pixel pixel_centre point_falloff
+position_out prepare properties radiance radiance_out ray_ahead ray_cone ray_origin rebase reflect_light rounding
+scene_from_clip sdf shown sky sky_radiance span_complement span_hull span_intersection span_union span_within start_out
+start_state steps sun_disc sunk_parabola surface tangent tile_ray tolerance tone_map trace trace_pixel trace_ray
+transmit travelled turned unfinished weight_row window within
 """
 
 # Locals of templates and of generated statements: no function and no local of an expression may take these.
@@ -70,6 +71,7 @@ LOCALS = tuple(_LOCALS.split())
 RESERVED = frozenset(_KEYWORDS.split()) | frozenset(_FUNCTIONS.split()) | frozenset(_TEMPLATES.split())
 
 
+@lru_cache(maxsize=4096)
 def identifier(name: str) -> str:
     """`name` if GLSL allows it as an identifier, else the nearest that it does: always the same one."""
     legal = re.sub(r"_{2,}", "_", re.sub(r"[^A-Za-z0-9_]", "_", name))
@@ -108,6 +110,7 @@ class Names:
         return name
 
 
+@lru_cache(maxsize=4096)
 def literal(x: float) -> str:
     """A number as a GLSL float: the shortest decimal that reads back as the same float32.
 

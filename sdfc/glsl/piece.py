@@ -18,8 +18,9 @@ def piece_next(
     """
     part, ahead = step.part, step.ahead
     eps = "fine" if cut else "eps"
-    # from the start of its box on
-    body.once(f"{ahead} = max(min(t <= {box}.x ? FAR : {ahead}, {box}.y - max(t, {box}.x)), 4.0 * {eps});", part.span)
+    # from the start of its box on; powers of what is longer are no float32
+    longest = f"min({box}.y - max(t, {box}.x), 1024.0)"
+    body.once(f"{ahead} = max(min(t <= {box}.x ? FAR : {ahead}, {longest}), 4.0 * {eps});", part.span)
     q = body.point(own_point(part.inverse, graph.input("p")), f"q_{part.name}")
     scale = part.stretch if step.inside else -part.stretch
     before = "" if scale.is_constant and scale.number == 1.0 else f"{body.text(scale)} * "

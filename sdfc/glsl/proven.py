@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import assert_never
 
-from sdfc.facts.box import Box
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.glsl.blend import BlendWriter
 from sdfc.glsl.body import Body, own_direction, own_point
+from sdfc.glsl.boxes import declare_box, declare_within
 from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
@@ -185,7 +185,7 @@ class ProvenWriter:
         body.add("unfinished = next > t && next < limit ? 1.0 : 0.0;")
         # at the limit of steps a hit is what converges: nearer than the pixel is wide (Keinert 2014, section 3.2)
         body.add(f"float near = {literal(1.0 / FINE)} * tolerance(t);")
-        body.add("return next > t && (next >= limit || next - t > near) ? FAR : t;")
+        body.add("return next >= limit || next - t > near ? FAR : t;")
         self._function(
             "float march(vec3 o, vec3 d, float start, float limit)",
             body,
@@ -195,11 +195,12 @@ class ProvenWriter:
     def _boxes(self, body: Body, step: Step) -> None:
         match step:
             case Within():
-                self._box(body, step.name, step.box)
+                declare_within(self._graph, body, step)
                 self._boxes(body, step.step)
             case Chord():
                 # wider than what counts as there: a ray along a wall would creep, its chords ending where it is
-                self._box(body, f"box_{step.part.name}", step.part.box.widened(8.0 * SMALLEST_TOLERANCE))
+                declare_box(body, f"box_{step.part.name}", step.part.box.widened(8.0 * SMALLEST_TOLERANCE))
+                body.once(f"float most_{step.part.name} = FAR;")
             case Any() | All():
                 for child in step.steps:
                     self._boxes(body, child)
@@ -209,10 +210,6 @@ class ProvenWriter:
                 pass
             case _:
                 assert_never(step)
-
-    def _box(self, body: Body, name: str, box: Box) -> None:
-        centre, half = (", ".join(map(literal, numbers)) for numbers in (box.centre, box.half))
-        body.once(f"vec2 {name} = box_interval(o - vec3({centre}), d, vec3({half}));")
 
     def _directions(self, body: Body, root: Step) -> dict[int, Expr]:
         """The ray's direction in the own space of each tangent's part: the same all along the ray."""
@@ -347,16 +344,18 @@ class ProvenWriter:
         return f"enter({_chain('meeting', pairs)}.xy, t)"
 
     def _chord(self, step: Chord, body: Body, direction: Expr) -> str:
-        """The value is looked at once more, where the tangent (or the part's box) ends."""
+        """The value is looked at once more, on the way to where the tangent (or the part's box) ends."""
         part, name = step.part, step.part.name
         body.once(f"vec2 v_{name}_chord = {self._blends.slope(body, part, direction)};", part.span)
-        body.once(f"float reach_{name} = chord_reach(t, v_{name}_chord, box_{name}.y, fine);")
+        body.once(f"float reach_{name} = chord_reach(t, v_{name}_chord, box_{name}.y, most_{name}, fine);")
         end = self._graph.input(f"p_{name}")
         body.once(f"vec3 p_{name} = p + reach_{name} * d;")
-        q = body.point(own_point(part.inverse, end), f"q_{name}_end")
+        q = body.point(own_point(part.inverse, end), f"q_{part.name}_end")
         text = body.call(self._functions.of_part(part, Role.SLOPE), [q, body.text(direction)])
         scale = "" if part.stretch.is_constant and part.stretch.number == 1.0 else f"{body.text(part.stretch)} * "
-        return f"chord(t, v_{name}_chord.x, reach_{name}, {scale}{text}.x, fine)"
+        seen = f"v_{name}_chord.x, reach_{name}, {scale}{text}.x"
+        body.once(f"float out_{name} = chord(t, {seen}, fine, most_{name});", part.span)
+        return f"out_{name}"
 
     def _ball(self, step: Ball, scope: Scope) -> str:
         part, body = step.part, scope.body

@@ -16,9 +16,14 @@ from sdfc.diagnostics import InternalError
 
 _TOKEN = re.compile(r"//[^\n]*|[A-Za-z_]\w*|\.?\d(?:[\w.]|(?<=[eE])[+-])*|\s+|.", re.DOTALL)
 _WORD = re.compile(r"[A-Za-z_]\w*\Z")
-_QUALIFIERS = frozenset(
-    {"const", "uniform", "in", "out", "inout", "flat", "noperspective", "highp", "writeonly", "readonly", "varying"}
-)
+_COMMENT = re.compile(r"//[^\n]*")
+_FREE_WORD = re.compile(r"(?<![\w.])[A-Za-z_]\w*")  # no member or component, no letter of a number
+_FREE_WORD_OR_COMMENT = re.compile(rf"{_COMMENT.pattern}|{_FREE_WORD.pattern}")
+_BOUNDARY = re.compile(r"//[^\n]*|[;(){}\[\]]")
+_TRAILING = re.compile(r"[^\S\n]+//([^\n]*)")  # the comment behind an item, on its line
+_QUALIFIERS = "const uniform inout in out flat noperspective highp writeonly readonly varying"
+_QUALIFIED = re.compile(rf"(?:(?:{_QUALIFIERS.replace(' ', '|')})\b\s*)*")
+_FUNCTION = re.compile(r"(\w+)\s+(\w+)\s*\(")
 
 
 class Kind(Enum):
@@ -50,27 +55,31 @@ class Item:
     @cached_property
     def words(self) -> frozenset[str]:
         """Every word of the code that is not a component or a member."""
-        return frozenset(w for w, is_member in _words(self.tokens) if not is_member)
+        return frozenset(_FREE_WORD.findall(_COMMENT.sub("", self.text)))
 
 
 def parse(text: str) -> list[Item]:
     """The items of a text, in order. Joined again by `joined`, they are the text but for its empty lines."""
+    text = _split_directives(text)
     items: list[Item] = []
-    held: list[str] = []
-    depth = 0
-    tokens = _TOKEN.findall(_split_directives(text))
-    for index, token in enumerate(tokens):
-        held.append(token)
-        depth += (token in "({[") - (token in ")}]") if len(token) == 1 else 0
-        if token.startswith("//") or depth or token not in (";", "}"):
+    start = depth = 0
+    for found in _BOUNDARY.finditer(text):
+        sign = found[0]
+        if sign in "([{":
+            depth += 1
+        elif sign in ")]}":
+            depth -= 1
+        if depth or sign not in ";}":
             continue
-        code = "".join(t for t in held if not t.startswith("//")).split()
-        if token == "}" and (code[0] == "struct" or _is_block(code)):
+        held = text[start : found.end()]
+        code = _COMMENT.sub("", held).strip()
+        if sign == "}" and (code.startswith("struct") or _is_block(code)):
             continue
-        items.append(_item(held, _trailing(tokens, index)))
-        held = []
-    rest = "".join(held).strip()
-    if any(not line.startswith("//") for line in rest.split("\n") if line):
+        trailing = _TRAILING.match(text, found.end())
+        items.append(_item(held.strip(), code, trailing[1].strip() if trailing else ""))
+        start = trailing.end() if trailing else found.end()
+    rest = text[start:].strip()
+    if _COMMENT.sub("", rest).strip():
         raise InternalError(f"the generated GLSL ends in the middle of a declaration: {rest[:80]}")
     return items
 
@@ -101,12 +110,14 @@ def pruned(items: Sequence[Item], roots: Iterable[str]) -> list[Item]:
         item = stack.pop()
         if id(item) not in needed:
             needed.add(id(item))
-            stack.extend(other for word in item.words for other in by_name.get(word, []))
+            stack.extend(other for word in by_name.keys() & item.words for other in by_name[word])
     return [item for item in items if id(item) in needed]
 
 
 def renamed(items: Sequence[Item], names: Mapping[str, str]) -> list[Item]:
     """Every word that is a key of `names` replaced, but for members and components."""
+    if not names:
+        return list(items)
     return [
         replace(
             item,
@@ -124,30 +135,19 @@ def globals_of(items: Sequence[Item]) -> tuple[str, ...]:
 
 
 def _replaced(item: Item, names: Mapping[str, str]) -> str:
+    if item.kind is not Kind.STRUCT:
+        return _FREE_WORD_OR_COMMENT.sub(lambda found: names.get(found[0], found[0]), item.text)
     tokens = list(item.tokens)
-    is_struct = item.kind is Kind.STRUCT
     first = True  # of a member's declaration: its type
-    previous = ""
     braces = 0
     for index, token in enumerate(tokens):
         if token.isspace() or token.startswith("//"):
             continue
         braces += (token == "{") - (token == "}")
-        if token in names and previous != "." and (not is_struct or not braces or first):
+        if token in names and (not braces or first):
             tokens[index] = names[token]
         first = token in "{;"
-        previous = token
     return "".join(tokens)
-
-
-def _words(tokens: Sequence[str]) -> Iterable[tuple[str, bool]]:
-    previous = ""
-    for token in tokens:
-        if token.isspace() or token.startswith("//"):
-            continue
-        if _WORD.match(token):
-            yield token, previous == "."
-        previous = token
 
 
 def _split_directives(text: str) -> str:
@@ -155,38 +155,32 @@ def _split_directives(text: str) -> str:
     return re.sub(r"^(#[^\n]*)$", r"\1;", text, flags=re.MULTILINE)
 
 
-def _trailing(tokens: list[str], index: int) -> str:
-    """The comment behind an item, taken from the tokens that follow it on its line."""
-    if index + 2 < len(tokens) and "\n" not in tokens[index + 1] and tokens[index + 2].startswith("//"):
-        comment = tokens[index + 2]
-        tokens[index + 2] = ""
-        return comment.removeprefix("//").strip()
-    return ""
-
-
-def _is_block(code: Sequence[str]) -> bool:
+def _is_block(code: str) -> bool:
     """Whether the braces are those of a uniform block."""
-    return "uniform" in code[:6] and code[0].startswith(("layout", "uniform"))
+    return code.startswith(("layout", "uniform")) and "uniform" in code.split(maxsplit=6)[:6]
 
 
-def _item(held: Sequence[str], note: str) -> Item:
-    text = "".join(held).strip()
-    code = [t for t in held if not t.isspace() and not t.startswith("//") and t]
-    if code[0] == "#":
+def _item(text: str, code: str, note: str) -> Item:
+    """`code` is the text without its comments."""
+    if code.startswith("#"):
         return Item(Kind.DIRECTIVE, (), "", text.removesuffix(";"), note)
-    if code[0] == "precision":
+    words = code.split(maxsplit=2)
+    if words[0] == "precision":
         return Item(Kind.DIRECTIVE, (), "", text, note)
-    if code[0] == "struct":
-        return Item(Kind.STRUCT, (code[1],), code[1], text, note)
-    code = _without_layout(code)
-    qualifiers = [w for w in code if w in _QUALIFIERS] if code[0] in _QUALIFIERS else []
-    while code[0] in _QUALIFIERS:
-        code = code[1:]
-    if code[0] == ";":  # a compute shader's size
+    if words[0] == "struct":
+        return Item(Kind.STRUCT, (words[1],), words[1], text, note)
+    if code.startswith("layout"):
+        code = code[code.index(")") + 1 :].lstrip()
+    qualifiers = _QUALIFIED.match(code)
+    assert qualifiers is not None
+    code = code[qualifiers.end() :]
+    if code.startswith(";"):  # a compute shader's size
         return Item(Kind.PORT, (), "", text, note)
-    if code[2] == "(":
-        return Item(Kind.FUNCTION, (code[1],), code[0], text, note)
-    return Item(_kind(qualifiers), _declared(code[1:]), code[0], text, note)
+    function = _FUNCTION.match(code)
+    if function:
+        return Item(Kind.FUNCTION, (function[2],), function[1], text, note)
+    type_, *declared = (token for token in _TOKEN.findall(code) if not token.isspace())
+    return Item(_kind(qualifiers[0].split()), _declared(declared), type_, text, note)
 
 
 def _kind(qualifiers: Sequence[str]) -> Kind:
@@ -195,10 +189,6 @@ def _kind(qualifiers: Sequence[str]) -> Kind:
     if "uniform" in qualifiers:
         return Kind.UNIFORM
     return Kind.PORT if {"in", "out"} & set(qualifiers) else Kind.VARIABLE
-
-
-def _without_layout(code: list[str]) -> list[str]:
-    return code[code.index(")") + 1 :] if code[0] == "layout" else code
 
 
 def _declared(code: Sequence[str]) -> tuple[str, ...]:

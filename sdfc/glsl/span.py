@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import assert_never
 
 from sdfc.field.function import Function
 from sdfc.field.graph import FieldGraph, Type
 from sdfc.field.span import span
 from sdfc.glsl.body import Body, own_direction, own_point
 from sdfc.glsl.expression import literal, print_function
+from sdfc.glsl.fold import Fold, Operations
 from sdfc.glsl.functions import AHEAD, Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
 from sdfc.glsl.names import identifier
-from sdfc.plan.steps import All, Any, Ball, Blend, Chord, Closed, Many, Part, Step, Tangent, Within, may_flatten
+from sdfc.plan.steps import Many, Part, Step, Within, may_flatten
 
 _LENGTH = identifier(AHEAD)
 _BOX_SPAN = "box_distance_span"
@@ -36,47 +36,19 @@ class SpanWriter:
         self._live = live
         self._many = many
         self._slopes = slopes  # the Lipschitz constant of each part's formula, by id
-        self._count = 0
 
     def write(self, root: Step) -> str:
         """The text of `map_span`, with what it calls that is not a part's own function."""
         body = Body(self._live)
-        result = self._fold(root, body)
+        operations = Operations(
+            "vec4", _STILL, "span_union", "span_intersection", self._value, self._many_span, self._within
+        )
+        result = Fold(operations).text(root, body)
         body.add(f"vec4 whole = {result};")
         body.add("return vec4(whole.xy, clamp(whole.zw, -1.0, 1.0));")
         head = f"vec4 map_span(vec3 p, vec3 d, float {_LENGTH}) {{"
         text = "\n".join([head, *body.lines, "}", ""])
         return f"{print_function(_box_span(self._graph), _BOX_SPAN)}\n{text}" if _BOX_SPAN in text else text
-
-    def _fold(self, step: Step, body: Body) -> str:
-        match step:
-            case Closed() | Ball():
-                return self._value(step.part, body, step.inside)
-            case Tangent() | Blend():
-                return self._value(step.part, body, True)
-            case Many():
-                return self._many_span(step, body)
-            case Chord():
-                return self._value(step.part, body, False)
-            case Within():
-                return self._within(step, body) if step.is_needed else self._bounded(step, body)
-            case Any():
-                return self._joined("span_union", step.steps, body)
-            case All():
-                return self._joined("span_intersection", step.steps, body)
-            case _:
-                assert_never(step)
-
-    def _joined(self, operation: str, steps: tuple[Step, ...], body: Body) -> str:
-        if not steps:
-            return _STILL
-        name = self._fresh()
-        first = self._fold(steps[0], body)
-        body.add(f"vec4 {name} = {first};")
-        for step in steps[1:]:
-            text = self._fold(step, body)
-            body.add(f"{name} = {operation}({name}, {text});")
-        return name
 
     def _value(self, part: Part, body: Body, inside: bool) -> str:
         if not math.isfinite(self._slopes[id(part)]):
@@ -89,24 +61,16 @@ class SpanWriter:
             text = f"{body.text(scale)} * {text}"
         return text if inside else f"span_complement({text})"
 
-    def _many_span(self, step: Many, body: Body) -> str:
+    def _many_span(self, step: Many, body: Body, name: str) -> str:
         """Distances all: no dearer than the value, and what a ball says."""
-        name = self._fresh()
         self._many.value(step, body, name)
         return f"vec4({name} - {_LENGTH}, {name} + {_LENGTH}, -1.0, 1.0)"
 
-    def _within(self, step: Within, body: Body) -> str:
-        inner = self._fold(step.step, body)
+    def _within(self, step: Within, inner: str) -> str:
+        if not step.is_needed:
+            return f"span_intersection({_box(step)}, {inner})" if may_flatten(step) else inner
         margin = literal(1e-3 * step.box.radius)
         return f"span_within({_box(step)}, {inner}, {margin})"
-
-    def _bounded(self, step: Within, body: Body) -> str:
-        inner = self._fold(step.step, body)
-        return f"span_intersection({_box(step)}, {inner})" if may_flatten(step) else inner
-
-    def _fresh(self) -> str:
-        self._count += 1
-        return f"d{self._count}"
 
 
 def _box(step: Within) -> str:

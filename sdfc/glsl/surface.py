@@ -81,7 +81,7 @@ class SurfaceWriter:
         self._varying = [
             p
             for p in PROPERTIES
-            if len({_property(m, p).id for m in materials}) > 1 or self._is_computed(_property(materials[0], p))
+            if len({property_of(m, p).id for m in materials}) > 1 or self._is_computed(property_of(materials[0], p))
         ]
         self._p, self._before = graph.input("p"), graph.input("before")
         self._count = 0
@@ -107,7 +107,7 @@ class SurfaceWriter:
         members = ["vec4 field;  // gradient and value"]
         members += ["float rank;  // the value of what is traced, a little way back"] * self._looks_back
         members += ["float material;"]
-        members += [f"{type_name(_property(self._materials[0], p).type)} {p};" for p in self._varying]
+        members += [f"{type_name(property_of(self._materials[0], p).type)} {p};" for p in self._varying]
         rank = "rank" if self._looks_back else "field.w"
         lines = ["struct Surface {", *(f"    {m}" for m in members), "};", ""]
         lines += [
@@ -122,7 +122,7 @@ class SurfaceWriter:
 
     def _constructor(self, index: int, material: Material) -> list[str]:
         body = Body(self._live)
-        values = body.texts([_property(material, p) for p in self._varying])
+        values = body.texts([property_of(material, p) for p in self._varying])
         arguments = ", ".join(["field", *["rank"] * self._looks_back, f"{index}.0", *values])
         return [
             f"Surface {self._names[id(material)]}(vec4 field{', float rank' * self._looks_back}) {{",
@@ -165,7 +165,7 @@ class SurfaceWriter:
         body = Body(self._live)
         texts = {}
         for name in PROPERTIES:
-            fixed = _property(self._materials[0], name)
+            fixed = property_of(self._materials[0], name)
             texts[name] = f"s.{name}" if name in self._varying else body.text(fixed)
         assert not body.lines, "a property's value is a constant or a param"
         return texts
@@ -288,7 +288,8 @@ class SurfaceWriter:
         return f"s{self._count}"
 
 
-def _property(material: Material, name: str) -> Expr:
+def property_of(material: Material, name: str) -> Expr:
+    """One of PROPERTIES."""
     value = getattr(material, name)
     assert isinstance(value, Expr)
     return value

@@ -12,11 +12,28 @@ _QUIET = 25  # milliseconds without an event: what an editor does for one save i
 _LONGEST = 250  # milliseconds of events without a pause
 
 
+class Bell:
+    """Wakes the one who waits: any thread may ring it."""
+
+    def __init__(self) -> None:
+        self._rung = threading.Event()
+
+    def ring(self) -> None:
+        self._rung.set()
+
+    def wait(self, seconds: float) -> bool:
+        """Until it is rung, or has been since the last time; so long at most. Whether it was."""
+        rung = self._rung.wait(seconds)
+        self._rung.clear()
+        return rung
+
+
 class Saves:
     """Waits in a thread of its own, so that signals (Ctrl-C) reach the main one as they always do."""
 
-    def __init__(self) -> None:
+    def __init__(self, bell: Bell) -> None:
         self._folders: frozenset[Path] = frozenset()
+        self._bell = bell
         self._happened = threading.Event()
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
@@ -32,10 +49,12 @@ class Saves:
         self._thread.start()
 
     def wait(self, seconds: float) -> bool:
-        """Wait for an event, so long at most; whether there was one."""
-        happened = self._happened.wait(seconds)
+        """Wait for the bell, so long at most; whether something was saved."""
+        self._bell.wait(seconds)
+        if not self._happened.is_set():  # cleared only where it is set: a save that comes here rings again
+            return False
         self._happened.clear()
-        return happened
+        return True
 
     def _run(self, folders: Collection[Path], stop: threading.Event) -> None:
         from watchfiles import watch
@@ -53,6 +72,7 @@ class Saves:
         try:
             for _ in changes:
                 self._happened.set()
+                self._bell.ring()
         except OSError:  # a folder is gone, or the system watches no more: whoever waits looks now and then anyway
             return
 

@@ -1,188 +1,159 @@
-"""One scene's picture through many edits: what each needs, done; what is old, released."""
+"""One scene through many edits: what each needs, done and shown; what is old, released."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from enum import Enum
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from sdfc.api.files import write_files
-from sdfc.api.program import open_renderer
-from sdfc.api.renderer import GlRenderer, Renderer, Shot
+from sdfc.api.renderer import Renderer, Shot
 from sdfc.api.request import AUTO, View, checked_size, checked_tracer
-from sdfc.diagnostics import DeviceError, Diagnostic
-from sdfc.image.picture import Image
-from sdfc.live import numbers
-from sdfc.live.build import ENTRY, Built, Touched, aimed, build, load
-from sdfc.live.snapshot import Edit, Snapshot, compare
-from sdfc.pipeline import Compiled, Options
+from sdfc.diagnostics import DeviceError
+from sdfc.live.edits import Edits, Shown
+from sdfc.live.painter import Painter
+from sdfc.live.saves import Bell
+from sdfc.live.snapshot import Snapshot
+from sdfc.live.update import Speed, Stopwatch, Update
+from sdfc.pipeline import Options
 
-_PROGRAMS_KEPT = 4  # the last ones: an edit that is undone needs no compiling
+if TYPE_CHECKING:
+    from sdfc.live.pages import Pages
+    from sdfc.live.worker import Worker
 
-
-class Speed(Enum):
-    """What an edit cost: from nothing to a shader that the driver has not seen."""
-
-    NOTHING = "nothing to draw"
-    NUMBERS = "numbers"
-    CAMERA = "camera"
-    SAME_SHADER = "same shader"
-    NEW_SHADER = "new shader"
+__all__ = ["Session", "Speed", "Update"]
 
 
 @dataclass(frozen=True, slots=True)
-class Update:
-    """What was done for a save. Times in milliseconds, by what took them."""
+class _Waiting:
+    """What is to be drawn as soon as its shader is compiled."""
 
-    speed: Speed
-    times: dict[str, float]
-    live: int  # literals that are uniforms now
-    warnings: tuple[Diagnostic, ...] = ()
-
-    @property
-    def milliseconds(self) -> float:
-        return sum(self.times.values())
-
-
-@dataclass(slots=True)
-class _Watch:
-    """Time since the last look."""
-
-    times: dict[str, float] = field(default_factory=dict)
-    since: float = field(default_factory=time.perf_counter)
-
-    def took(self, what: str) -> None:
-        now = time.perf_counter()
-        self.times[what] = 1e3 * (now - self.since)
-        self.since = now
+    shown: Shown
+    watch: Stopwatch
+    is_trusted: bool = True  # whether it is what was read
 
 
 class Session:
-    """Draws the snapshots of one scene, one after the other, into one file."""
+    """Shows the snapshots of one scene, one after the other: in a file, on pages, or both."""
 
     def __init__(
-        self, output: Path, size: tuple[int, int], tracer: str, backend: str, note: Callable[[str], None]
+        self,
+        output: Path | None,
+        size: tuple[int, int],
+        tracer: str,
+        backend: str,
+        note: Callable[[str], None],
+        pages: Pages | None = None,
+        worker: Worker | None = None,
+        bell: Bell | None = None,
     ) -> None:
         self.output = output
         self.size = checked_size(size)
         self.tracer = checked_tracer(tracer)
-        self._backend = backend
-        self._note = note
-        self._renderer: Renderer | None = None
-        self._shown: Built | None = None
-        self._values: dict[str, tuple[float, ...]] = {}
-        self._recent: dict[str, Compiled] = {}  # whose shaders are on the device, by their code, the last one last
+        self.bell = bell or Bell()  # rung when there is something to do
+        self._pages = pages
+        self._painter = Painter(backend, note, worker, self.bell.ring)
+        self._edits = Edits(self._options)
+        self._waiting: _Waiting | None = None
 
     @property
     def renderer(self) -> Renderer:
-        """What draws; opened at the first picture, and again after it failed."""
-        if self._renderer is None:
-            self._renderer = open_renderer(self._backend, self._note)
-        return self._renderer
+        """What draws."""
+        return self._painter.renderer
 
     def update(self, snapshot: Snapshot) -> Update:
-        """Draw the snapshot. Raises what is wrong with it, the device or the file, and goes on showing the last."""
-        watch = _Watch()
-        shown = self._shown
-        edit = Edit(structure=True) if shown is None else compare(shown.snapshot, snapshot)
-        if shown is None or not _is_quick(shown, snapshot, edit):
-            return self._rebuild(snapshot, edit, watch)
-        built = replace(shown, snapshot=snapshot, live=_touched_last(shown, edit))
-        if edit == Edit():
-            self._shown = built
-            return Update(Speed.NOTHING, {}, len(built.live))
-        values = self._values | {
-            made.name: snapshot.literal(key).value for key in edit.literals if (made := shown.bound(key)) is not None
-        }
-        if edit.camera or (shown.compiled.scene.camera is None and built.live):
-            scene = load(snapshot, {})
-            built = replace(built, compiled=aimed(built.compiled, scene, self._options()))
-        watch.took("reading")
-        self._show(built, values, watch)
-        return Update(Speed.CAMERA if edit.camera else Speed.NUMBERS, watch.times, len(built.live))
+        """Show the snapshot, however long it takes. Raises as `begin` does."""
+        shown, watch = self._next(snapshot)
+        self._tell_pages(shown, watch)
+        return self._finish(shown, watch)
 
-    def _rebuild(self, snapshot: Snapshot, edit: Edit, watch: _Watch) -> Update:
-        shown = self._shown
-        live: numbers.Live = {}
-        touched: list[Touched] = []
-        if shown is not None and edit.structure:
-            live = numbers.carried(shown.live, shown.snapshot, snapshot)
-        elif shown is not None:
-            live = {key: made for key, made in shown.live.items() if numbers.is_within(snapshot.literal(key), made)}
-            before = shown.snapshot
-            pairs = {key: (before.literal(key), snapshot.literal(key)) for key in edit.literals}
-            touched = [
-                Touched(key, numbers.ranges(*pair))
-                for key, pair in pairs.items()
-                if key not in live and key not in shown.declared and key not in shown.fixed
-            ]
-        same = shown if shown is not None and not edit.structure else None
-        built = build(snapshot, self._options(), live, touched, same)
-        known = self._recent.get(built.code)
-        if known is not None:  # where comments differ, the driver would compile for nothing
-            built = replace(built, compiled=_in_the_words_of(known, built.compiled))
-        watch.took("compiling")
-        self._show(built, {}, watch)
-        speed = Speed.SAME_SHADER if known is not None else Speed.NEW_SHADER
-        return Update(speed, watch.times, len(built.live), built.compiled.scene.warnings)
+    def begin(self, snapshot: Snapshot) -> Update | None:
+        """Show the snapshot, or None where its shader is compiled ahead: then `go_on` does, unless another comes first.
+
+        Raises what is wrong with the snapshot, the device or the file, and goes on showing the last.
+        """
+        shown, watch = self._next(snapshot)
+        is_drawn = self.output is not None and shown.speed is not Speed.NOTHING
+        has_time = self._edits.shown is not None or self._pages is not None  # there is something to do meanwhile
+        must_wait = is_drawn and has_time and not self._painter.is_ready(self._shot(shown))
+        self._tell_pages(shown, watch)
+        if not must_wait:
+            return self._finish(shown, watch)
+        self._waiting = _Waiting(shown, watch)
+        return None
+
+    def go_on(self) -> Update | None:
+        """Finish what was begun, if its shader is there."""
+        waiting, self._waiting = self._waiting, None
+        if waiting is None:
+            return None
+        if not self._painter.is_ready(self._shot(waiting.shown)):
+            self._waiting = waiting
+            return None
+        waiting.watch.took("compiling ahead")
+        update = self._finish(waiting.shown, waiting.watch)
+        if not waiting.is_trusted:
+            self._edits.distrust()
+        return update
+
+    def answer(self) -> bool:
+        """Draw for one page that asks for a picture, if there is one; whether there was."""
+        return self._pages is not None and self._pages.answer(self._painter)
+
+    def _next(self, snapshot: Snapshot) -> tuple[Shown, Stopwatch]:
+        """What is to be shown now. What waits is given up, or goes on to wait with other numbers."""
+        watch, waiting = Stopwatch(), self._waiting
+        shown = self._edits.next(snapshot, watch, waiting.shown if waiting is not None else None)
+        if waiting is not None and shown.built.code == waiting.shown.built.code:
+            shown, watch = replace(shown, speed=waiting.shown.speed), waiting.watch
+        self._painter.give_up(but=shown.built.compiled)
+        self._waiting = None
+        return shown, watch
+
+    def _tell_pages(self, shown: Shown, watch: Stopwatch) -> None:
+        if self._pages is not None:
+            self._pages.show(shown)
+            if shown.speed is not Speed.NOTHING:
+                watch.took("sending")
+
+    def _finish(self, shown: Shown, watch: Stopwatch) -> Update:
+        if self.output is not None and shown.speed is not Speed.NOTHING:
+            self._write(self.output, shown, watch)
+        self._edits.keep(shown)
+        self._painter.keep(self._edits.recent)
+        is_compiled = shown.speed in (Speed.SAME_SHADER, Speed.NEW_SHADER)
+        warnings = shown.built.compiled.scene.warnings if is_compiled else ()
+        return Update(shown.speed, watch.times, len(shown.built.live), warnings)
+
+    def _write(self, output: Path, shown: Shown, watch: Stopwatch) -> None:
+        try:
+            image = self._painter.draw(self._shot(shown))
+        except DeviceError:
+            self._edits.forget()
+            raise
+        watch.took("drawing")
+        write_files(image, output, "npy")
+        watch.took("writing")
+
+    def _shot(self, shown: Shown) -> Shot:
+        return Shot(shown.built.compiled, View(), shown.params, self.size)
 
     def _options(self) -> Options:
-        """As `render` would, for a picture that is no long work."""
+        """As `render` would, for a picture that is no long work; as `emit-glsl` would, where only pages draw."""
+        if self.output is None:
+            return Options() if self.tracer == AUTO else Options(tracer=self.tracer)
         rays = self.renderer.rays
         return Options(rays=rays) if self.tracer == AUTO else Options(tracer=self.tracer, rays=rays)
 
-    def _show(self, built: Built, values: dict[str, tuple[float, ...]], watch: _Watch) -> None:
-        params = {p.name: p.default for p in built.compiled.scene.params} | values
-        image = self._drawn(Shot(built.compiled, View(), params, self.size), built.code)
-        watch.took("drawing")
-        write_files(image, self.output, "npy")
-        watch.took("writing")
-        self._shown, self._values = built, values
-
-    def _drawn(self, shot: Shot, code: str) -> Image:
-        try:
-            colour = self.renderer.radiance(shot, 0, None)[..., :3]
-        except DeviceError:
-            self.close()
-            raise
-        self._recent.pop(code, None)
-        self._recent[code] = shot.compiled
-        while len(self._recent) > _PROGRAMS_KEPT:
-            del self._recent[next(iter(self._recent))]
-        if isinstance(self._renderer, GlRenderer):
-            self._renderer.keep([text for compiled in self._recent.values() for text in compiled.printed(ENTRY)])
-        return Image(colour.astype("float32"), {}, shot.compiled.materials, self.renderer.name)
-
     def distrust(self) -> None:
         """What is shown may not be what was read: the next update begins anew."""
-        self._shown = None
+        self._edits.distrust()
+        if self._waiting is not None:
+            self._waiting = replace(self._waiting, is_trusted=False)
 
     def close(self) -> None:
         """Give the device back. The next picture opens another."""
-        renderer, self._renderer, self._recent = self._renderer, None, {}
-        if renderer is not None:
-            renderer.close()
-
-
-def _is_quick(shown: Built, snapshot: Snapshot, edit: Edit) -> bool:
-    """Whether what is compiled can show the edit: only uniforms change, and what they may be."""
-    if edit.structure:
-        return False
-    scene = shown.compiled.scene
-    if edit.camera and (scene.camera is None or not scene.lights):  # without lights, the sun stands behind the camera
-        return False
-    bound = [(key, shown.bound(key)) for key in edit.literals]
-    return all(made is not None and numbers.is_within(snapshot.literal(key), made) for key, made in bound)
-
-
-def _touched_last(shown: Built, edit: Edit) -> numbers.Live:
-    """The live literals with those that were just edited at the end."""
-    moved = {key: made for key, made in shown.live.items() if key in edit.literals}
-    return {key: made for key, made in shown.live.items() if key not in moved} | moved
-
-
-def _in_the_words_of(known: Compiled, new: Compiled) -> Compiled:
-    """The new scene with the texts of shaders that are on the device."""
-    return replace(known, scene=new.scene, plan=new.plan, setting=new.setting, shape=new.shape, frame=new.frame)
+        self._painter.give_up()
+        self._edits.forget()
+        self._painter.close()

@@ -12,8 +12,9 @@ from sdfc.api.request import RequestError
 from sdfc.api.source import STDIN, Kind
 from sdfc.diagnostics import SceneError
 from sdfc.live.saves import Saves
-from sdfc.live.session import Session, Update
+from sdfc.live.session import Session
 from sdfc.live.snapshot import Snapshot, take
+from sdfc.live.update import Update
 
 _LOOK = 1.0  # seconds between looks where no event comes: some file systems send none
 _SETTLING = 0.1  # seconds that a file may be missing or half written before that is an error
@@ -31,18 +32,17 @@ Stamp = tuple[tuple[int, int, int] | None, ...]
 
 def watch(scene: Path, kind: Kind | None, session: Session) -> Iterator[Update | Failure]:
     """An update for every save, the first picture first, for ever. Raises RequestError where there is no scene."""
-    if str(scene) == STDIN:
-        raise RequestError("standard input cannot be watched: give the scene's file")
-    seen: Snapshot | Exception = _looked(scene, kind)
-    if isinstance(seen, RequestError):
-        raise seen
-    with Saves() as saves:
+    seen: Snapshot | Exception = first_look(scene, kind)
+    with Saves(session.bell) as saves:
         paths = _watched(saves, scene, seen, ())
         stamp = _stamp(paths)
         yield from _told(scene, kind, session, seen)
+        is_busy = False
         while True:
-            happened = saves.wait(_LOOK)
+            happened = saves.wait(0.0 if is_busy else _LOOK)
             if not happened and _stamp(paths) == stamp:
+                yield from _gone_on(session)
+                is_busy = session.answer()  # one picture at a time: a save comes first
                 continue
             stamp = _stamp(paths)  # before the look: what is saved during it is seen by the next one
             now = _settled(scene, kind, _looked(scene, kind))
@@ -51,6 +51,16 @@ def watch(scene: Path, kind: Kind | None, session: Session) -> Iterator[Update |
                 continue
             seen = now
             yield from _told(scene, kind, session, seen)
+
+
+def first_look(scene: Path, kind: Kind | None) -> Snapshot | Exception:
+    """The scene's files, or what is wrong with them. Raises RequestError where there is nothing to watch."""
+    if str(scene) == STDIN:
+        raise RequestError("standard input cannot be watched: give the scene's file")
+    seen = _looked(scene, kind)
+    if isinstance(seen, RequestError):
+        raise seen
+    return seen
 
 
 def _looked(scene: Path, kind: Kind | None) -> Snapshot | Exception:
@@ -74,16 +84,28 @@ def _told(scene: Path, kind: Kind | None, session: Session, seen: Snapshot | Exc
     try:
         if isinstance(seen, Exception):
             raise seen
-        update = session.update(seen)
+        update = session.begin(seen)
         if not _is_read_alike(seen, _looked(scene, kind)):
             session.distrust()
-        yield update
+        if update is not None:
+            yield update
     except SceneError as error:
         time.sleep(_SETTLING)
         if _is_same(seen, _looked(scene, kind)):
             yield Failure(error)
     except Exception as error:  # a device, a full disk, a bug in sdfc: none of them ends the watch
         yield Failure(error)
+
+
+def _gone_on(session: Session) -> Iterator[Update | Failure]:
+    """The update for what was waiting for its shader, if that is there now."""
+    try:
+        update = session.go_on()
+    except Exception as error:  # as above
+        yield Failure(error)
+    else:
+        if update is not None:
+            yield update
 
 
 def _is_read_alike(before: Snapshot, now: Snapshot | Exception) -> bool:

@@ -13,7 +13,6 @@ from sdfc.openscad.plane import Plane
 from sdfc.openscad.syntax import Argument, Call, Value
 
 FACETS_THAT_COUNT = 50  # an explicit $fn below this means the polygon; from here on it stands for the curve
-MOST_FACETS = 10_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -33,6 +33,7 @@ class Plan:
     radius: float
     centre: tuple[float, float, float]
     is_finite: bool  # the whole scene lies in the unit ball of its own coordinates
+    is_convex: bool = False  # the whole scene is one convex solid: nothing in it casts a shadow on it
     prepass: bool = False  # whether tiles of pixels are told first how far they are empty
     near_eye: bool = False  # whether the eye is within NEAR_EYE: rays are moved to the scene by one step, not two
     budget: int | None = None  # a measurer's limit on the passes of a ray's loops

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias, assert_never
 
 from sdfc.diagnostics import SceneError, scene_error
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box, everything
 from sdfc.facts.curvature import convex_shapes
+from sdfc.facts.exactness import exactness
 from sdfc.facts.lipschitz import Lipschitz
-from sdfc.facts.rule import Rules
+from sdfc.facts.rule import Rule, Rules
 from sdfc.field.graph import FieldGraph
 from sdfc.plan.gather import gathered
 from sdfc.plan.steps import (
@@ -31,6 +32,7 @@ from sdfc.plan.steps import (
     Tangent,
     Within,
 )
+from sdfc.shape.definition import Exactness
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, topological
 from sdfc.shape.lower import lower_ray
 from sdfc.shape.material import Material
@@ -169,32 +171,51 @@ class Prover:
         own = part.box if leaf.inside else everything()
         where = own.meet(domain)
         if where.is_empty:
-            return Any(()) if leaf.inside else self._ball(part, leaf, own)
+            return Any(()) if leaf.inside else self._ball(part, leaf, own, has_ends=False)
+        ends = None if where.is_finite else self._ends(leaf, where)
         if where.is_finite:  # a little wider than the solid: its boundary belongs to it
             where = where.widened(1e-5 * max(where.radius, 1e-3))
         step: Step
         if tree is not None:
             step = Blend(part, tree, self._lipschitz.constant(leaf.placed, where))
         else:
-            step = self._ball(part, leaf, where)
+            step = self._ball(part, leaf, where, ends is not None, is_cut=domain != everything())
         needed = not self._lipschitz.is_global(leaf.placed)
-        if needed and not where.is_finite:
-            return step  # found over everything: it holds everywhere
+        if not where.is_finite:
+            return step if ends is None else replace(self._within(ends[0], step, False), inverse=ends[1])
         boxed = leaf.inside or needed or _is_by_pieces(step)
-        return self._within(where, step, needed) if where.is_finite and boxed else step
+        return self._within(where, step, needed) if boxed else step
 
-    def _ball(self, part: Part, leaf: Leaf, where: Box) -> Ball:
+    def _ends(self, leaf: Leaf, where: Box) -> tuple[Box, Matrix | None] | None:
+        """Where a part without end has ends, a little wider; with what maps the scene to there, where it is turned."""
+        far = [abs(x) for x in (*where.lo, *where.hi) if math.isfinite(x)]
+        if far:
+            return where.widened(1e-5 * max(1.0, *far)), None
+        own = self._bounds.box(leaf.shape)
+        far = [abs(x) for x in (*own.lo, *own.hi) if math.isfinite(x)]
+        if not far or leaf.affine is None or not leaf.inside:
+            return None
+        unit = self._bounds.most(largest_stretch(leaf.affine.inverse))  # the scene's, in the part's own space
+        return (own.widened(1e-5 * max(unit, *far)), leaf.affine.inverse) if math.isfinite(unit) else None
+
+    def _ball(self, part: Part, leaf: Leaf, where: Box, has_ends: bool, is_cut: bool = True) -> Ball:
         if self._rules is None or not where.is_finite:
-            return Ball(part, self._lipschitz.constant(leaf.placed, where), leaf.inside)
+            lipschitz = self._lipschitz.constant(leaf.placed, where)
+            # along a floor balls are the more the flatter a ray is, pieces hardly so
+            is_floor = has_ends and self._rules is not None
+            return self._ruled(part, lipschitz, leaf, Rule(by_pieces=is_floor, why="it has no end" if is_floor else ""))
         own = where if leaf.affine is None else self._bounds.moved(leaf.affine.inverse, where)
         lipschitz, unknown = math.inf, None
         try:
             lipschitz = self._lipschitz.constant(leaf.placed, where)
         except SceneError as error:
             unknown = error
-        rule = self._rules.best(leaf.shape, own, lipschitz, leaf.inside)
-        if rule is None:
+        best = self._rules.best(leaf.shape, own, lipschitz, leaf.inside, is_cut)
+        if best is None:
             raise unknown or AssertionError("there is a ball at the least")
+        return self._ruled(part, lipschitz, leaf, best)
+
+    def _ruled(self, part: Part, lipschitz: float, leaf: Leaf, rule: Rule) -> Ball:
         self._pieces += rule.by_pieces
         ahead = f"ahead_{self._pieces}" if rule.by_pieces else ""
         return Ball(part, lipschitz, leaf.inside, rule.bend, ahead, rule.why)
@@ -217,9 +238,9 @@ class Prover:
             return None
 
     def _is_blend(self, shape: Apply) -> bool:
-        claims = shape.definition.claims
-        smooth = claims.lowering is not None and claims.dual is not None and len(shape.children) == 2
-        return smooth and shape.definition.name.startswith("smooth_union")
+        """Whether it is known to be a concave function of its two operands, where both are positive."""
+        definition = shape.definition
+        return definition.is_standard and definition.name.startswith("smooth_union") and len(shape.children) == 2
 
     def _blend_of(self, shape: Shape, whole: Leaf) -> BlendTree | None:
         leaf = unwrapped(shape)
@@ -231,6 +252,8 @@ class Prover:
                     return BlendUnion(tuple(found)) if len(found) == len(operands) else None
                 case _:
                     return None
+        if not _is_near_distance(leaf.shape):
+            return None
         if leaf.inside and leaf.shape.id in self._convex:  # the formula: the blend is of formulas, not of gauges
             return Tangent(self.part(leaf))
         if leaf.inside and leaf.affine is None and self._is_blend(leaf.shape):
@@ -294,6 +317,12 @@ def _is_bare(shape: Shape, painted: set[int]) -> bool:
             return shape.definition.is_primitive and shape.dimension == 3 and shape.id not in painted
         case _:
             return False
+
+
+def _is_near_distance(shape: Apply) -> bool:
+    """Whether a value of the field tells how near the surface is: a formula of an author's may be flat there."""
+    own = all(node.definition.is_standard for node in topological(shape) if isinstance(node, Apply))
+    return own or exactness(shape)[shape.id] is not Exactness.NONE
 
 
 def _is_by_pieces(step: Step) -> bool:

@@ -140,12 +140,17 @@ BlendTree: TypeAlias = BlendLeaf | BlendNode | BlendUnion
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Within:
-    """`step` matters only inside a box: outside, the box's own closed-form interval says how far to go."""
+    """`step` matters only inside a box: outside, the box's own closed-form interval says how far to go.
+
+    The box may be without some of its sides: a floor lies below a plane. With `inverse`, it is one of the space that
+    this maps the scene to: a floor that is turned.
+    """
 
     name: str
     box: Box
     step: Step
-    is_needed: bool  # whether the step's constant holds only inside
+    is_needed: bool  # whether the step's constant holds only inside: never where the box has no end
+    inverse: Matrix | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -185,7 +190,7 @@ def is_finite(step: Step) -> bool:
 def may_flatten(step: Within) -> bool:
     """Whether what is within may know of no more than a small distance, however far away: its box knows better then."""
     match step.step:
-        case Ball(part=part):
+        case Ball(part=part) if step.box.is_finite:
             return exactness(part.shape)[part.shape.id] not in (Exactness.EXACT, Exactness.EXACT_OUTSIDE)
         case _:
             return False

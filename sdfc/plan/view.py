@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import Protocol
 
 from sdfc.diagnostics import scene_error
 from sdfc.passes.own_origin import Frame
 from sdfc.plan.setting import Setting, Vector, values_of
-from sdfc.scene.model import Scene
+from sdfc.scene.model import Param, Scene
 
 
 class CameraChange(Protocol):
@@ -61,8 +62,13 @@ def uniforms_of(
     }
     for param in scene.params:
         value = values[param.name]
-        uniforms[f"set_{param.name}"] = value if len(value) > 1 else value[0]
+        uniforms[uniform_name(param)] = value if len(value) > 1 else value[0]
     return uniforms
+
+
+def uniform_name(param: Param) -> str:
+    """The uniform that carries a param. GLSL keeps names with two underscores in a row for itself."""
+    return re.sub("_{2,}", "_", f"set_{param.name}")
 
 
 def pixel_at(target: Vector, frame: Frame, uniforms: Mapping[str, float | tuple[float, ...]]) -> float:

@@ -18,8 +18,9 @@ from sdfc.plan.steps import Part
 from sdfc.shape.definition import Environment, Kind
 from sdfc.shape.graph import Apply
 from sdfc.shape.look import Looks
-from sdfc.shape.lower import Lowering
+from sdfc.shape.lower import FAR, Lowering
 from sdfc.shape.material import Material
+from sdfc.shape.matrix import Matrix
 
 Array = NDArray[np.float64]
 Params = Mapping[str, tuple[float, ...]]
@@ -53,6 +54,22 @@ class Interval:
 
     enter: Array
     leave: Array
+
+
+def first_inside(intervals: list[Interval], t: Array) -> Array:
+    """The first parameter at or after t inside one of the intervals."""
+    answer = np.full(t.shape, FAR)
+    for interval in intervals:
+        reached = (interval.enter < interval.leave) & (t < interval.leave)
+        answer = np.minimum(answer, np.where(reached, np.maximum(t, interval.enter), FAR))
+    return answer
+
+
+def first_outside(intervals: list[Interval], t: Array) -> Array:
+    """The first parameter at or after t outside all of them (they are in order)."""
+    for interval in intervals:
+        t = np.where((interval.enter <= t) & (t < interval.leave), interval.leave, t)
+    return t
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,6 +217,16 @@ class Formulas:
             return np.array(value.numbers)
         return np.ravel(Evaluator([value])({}, self._params)[0])
 
+    def moved(self, matrix: Matrix, o: Array, d: Array) -> tuple[Array, Array]:
+        """Origins and directions (3, n) of rays where the matrix maps them."""
+        linear, offset = self._numbers(matrix)
+        return _product(linear, o) + offset, _product(linear, d)
+
+    def _numbers(self, matrix: Matrix) -> tuple[Array, Array]:
+        """Its linear part, (3, 3), and its offset, (3, 1)."""
+        linear = np.array([[float(self.constant(e)[0]) for e in row] for row in matrix.linear])
+        return linear, np.array([[float(self.constant(e)[0])] for e in matrix.offset])
+
     def material(self, material: Material) -> Array:
         """Its properties, (13,), in the order of PROPERTIES."""
         return np.concatenate([self.constant(getattr(material, name)) for name in PROPERTIES])
@@ -236,8 +263,7 @@ class Formulas:
             environment = {p.name: graph.param(f"its {p.name}", _TYPES[p.kind]) for p in definition.values}
         linear, offset = None, np.zeros((3, 1))
         if part.inverse is not None:
-            linear = np.array([[float(self.constant(e)[0]) for e in row] for row in part.inverse.linear])
-            offset = np.array([[float(self.constant(e)[0])] for e in part.inverse.offset])
+            linear, offset = self._numbers(part.inverse)
         stretch, grow = (float(self.constant(e)[0]) for e in (part.stretch, part.own_grow))
         return _Own(owner, environment, arguments, linear, offset, stretch, grow)
 

@@ -127,6 +127,8 @@ class Shader:
         return _column(toward), _column(self._formulas.constant(sun.color) * self._formulas.constant(sun.intensity))
 
     def _openness(self, hits: Hits, fold: SurfaceFold) -> Array:
+        if self._plan.is_convex:
+            return np.ones(hits.p.shape[1])
         heights = [h * self._setting.reach for h in OCCLUSION_HEIGHTS]
         reach = 1.5 * max(heights)
         distances = np.stack([fold.distance(hits.p + h * hits.normal, reach) for h in heights])

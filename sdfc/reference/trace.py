@@ -28,9 +28,10 @@ from sdfc.plan.steps import (
     is_closed,
 )
 from sdfc.plan.touch import Side, are_thick_together, convex_of, is_grown, thickest_skin
-from sdfc.reference.formulas import Formulas, Interval
+from sdfc.reference.formulas import Formulas, Interval, first_inside, first_outside
 from sdfc.reference.rays import Rays, box_interval
 from sdfc.shape.lower import FAR
+from sdfc.shape.matrix import Matrix
 
 Array = NDArray[np.float64]
 
@@ -134,7 +135,10 @@ class StepTracer:
         return np.where(t < limit, t, FAR), counts
 
     def _walk(self, member: Step, rays: Rays) -> _Walk:
-        boxes = {id(step): box_interval(rays, box) for step, box in _boxes_below(member)}
+        boxes = {}
+        for step, box, inverse in _boxes_below(member):
+            o, d = (rays.o, rays.d) if inverse is None else self._formulas.moved(inverse, rays.o, rays.d)
+            boxes[id(step)] = box_interval(replace(rays, o=o, d=d), box)
         return _Walk(rays, {}, boxes, {})
 
     def _intervals(self, leaf: Closed, walk: _Walk, mode: _Mode) -> list[Interval]:
@@ -150,10 +154,10 @@ class StepTracer:
         """Where stepping may begin: what boxes and closed-form parts prove before any value is known."""
         match step:
             case Closed(inside=True):
-                return _enter(self._intervals(step, walk, _Mode()), start)
+                return first_inside(self._intervals(step, walk, _Mode()), start)
             case Within():
                 enter, leave = walk.boxes[id(step)]
-                return _enter([Interval(enter, leave)], start)
+                return first_inside([Interval(enter, leave)], start)
             case Any() | Many() if members_of(step):
                 return _least([self._start(s, walk, start) for s in members_of(step)])
             case All() if step.steps:
@@ -167,7 +171,7 @@ class StepTracer:
             case Closed():
                 intervals = self._intervals(step, walk, mode)
                 taken = [Interval(i.enter[here.index], i.leave[here.index]) for i in intervals]
-                return _enter(taken, here.t) if step.inside else _leave(taken, here.t)
+                return first_inside(taken, here.t) if step.inside else first_outside(taken, here.t)
             case Tangent():
                 return self._tangent(step.part, here, mode.cut)
             case Chord():
@@ -246,16 +250,23 @@ class StepTracer:
         return np.where(value <= near, here.t, np.where(fall > 0.0, ahead, FAR))
 
     def _chord(self, step: Chord, walk: _Walk, here: _Place) -> Array:
-        """Out of a convex function from within: clear up to where the chord of its (concave) depth ends."""
+        """Out of a convex function from within: clear up to where the chord of its (concave) depth ends.
+
+        The chord is half as long next time where that is little: along a wall chords alone would creep.
+        """
         _, box_end = walk.boxes[id(step)]
         near = finest(here.t)
+        most = walk.ahead.setdefault(step.name, np.full(len(walk.rays), FAR))
         value, slope = self._formulas.slope(step.part, here.rays.at(here.t), here.rays.d)
         depth = 3.0 * near - value
         tangent = np.where(slope > 1e-6, depth / np.where(slope > 1e-6, slope, 1.0), FAR)
-        reach = np.clip(tangent, 0.0, np.maximum(box_end[here.index] - here.t, 0.0))
+        reach = np.minimum(tangent, most[here.index])
+        reach = np.clip(reach, 0.0, np.maximum(box_end[here.index] - here.t, 0.0))
         value_there, _ = self._formulas.slope(step.part, here.rays.at(here.t + reach), here.rays.d)
         depth_there = 3.0 * near - value_there
         clear = np.where(depth_there > 0.0, reach, reach * depth / np.maximum(depth - depth_there, 1e-30))
+        shorter = np.where(clear < 0.5 * reach, 0.5 * reach, 2.0 * np.maximum(clear, near))
+        most[here.index] = np.where(depth <= near, FAR, shorter)
         return np.where(depth <= near, here.t, here.t + np.maximum(clear, 0.5 * near) * SHY)
 
     def _ball(self, step: Ball, here: _Place, cut: bool) -> Array:
@@ -338,7 +349,8 @@ def box_of(step: Step) -> Box:
         case Chord():
             return everything()
         case Within():
-            return step.box.widened(MARGIN).meet(box_of(step.step))
+            inner = box_of(step.step)
+            return inner if step.inverse is not None else step.box.widened(MARGIN).meet(inner)
         case Many() | Any():
             members = members_of(step)
             box = box_of(members[0]) if members else nothing()
@@ -354,46 +366,26 @@ def box_of(step: Step) -> Box:
             assert_never(step)
 
 
-def _boxes_below(step: Step) -> list[tuple[Step, Box]]:
-    """The boxes that steps ask about along a ray."""
+def _boxes_below(step: Step) -> list[tuple[Step, Box, Matrix | None]]:
+    """The boxes that steps ask about along a ray, and what maps it to where they are."""
     match step:
         case Within():
-            return [(step, step.box), *_boxes_below(step.step)]
-        case Chord():
-            return [(step, step.part.box)]
+            return [(step, step.box, step.inverse), *_boxes_below(step.step)]
+        case Chord():  # wider than what counts as there, or a ray along a wall would creep
+            return [(step, step.part.box.widened(8.0 * SMALLEST_TOLERANCE), None)]
         case Any() | All():
-            return [pair for s in step.steps for pair in _boxes_below(s)]
+            return [box for s in step.steps for box in _boxes_below(s)]
         case Closed() | Many() | Tangent() | Ball() | Blend():
             return []
         case _:
             assert_never(step)
 
 
-def _enter(intervals: list[Interval], t: Array) -> Array:
-    """The first parameter at or after t inside one of the intervals."""
-    answer = np.full(t.shape, FAR)
-    for interval in intervals:
-        reached = (interval.enter < interval.leave) & (t < interval.leave)
-        answer = np.minimum(answer, np.where(reached, np.maximum(t, interval.enter), FAR))
-    return answer
-
-
-def _leave(intervals: list[Interval], t: Array) -> Array:
-    """The first parameter at or after t outside all of them (they are in order)."""
-    for interval in intervals:
-        t = np.where((interval.enter <= t) & (t < interval.leave), interval.leave, t)
-    return t
-
-
 def _least(arrays: list[Array]) -> Array:
-    result = arrays[0].copy()
-    for array in arrays[1:]:
-        np.minimum(result, array, out=result)
+    result: Array = np.minimum.reduce(arrays)
     return result
 
 
 def _greatest(arrays: list[Array]) -> Array:
-    result = arrays[0].copy()
-    for array in arrays[1:]:
-        np.maximum(result, array, out=result)
+    result: Array = np.maximum.reduce(arrays)
     return result

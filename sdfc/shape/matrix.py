@@ -103,7 +103,15 @@ def _sum_of_products(a: Sequence[float], b: Sequence[float]) -> float:
 
 
 def _dot(a: Row, b: Row) -> Expr:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    kept = [(x, y) for x, y in zip(a, b, strict=True) if y.is_constant or not _is(x, 0.0)]
+    if not kept:
+        return a[0]
+    first, *others = (y if _is(x, 1.0) else x * y for x, y in kept)
+    return sum(others, first)
+
+
+def _is(entry: Expr, number: float) -> bool:
+    return entry.is_constant and entry.numbers == (number,)
 
 
 def _combine(row: Row, matrix: tuple[Row, Row, Row]) -> Row:

@@ -7,6 +7,9 @@ float tangent(float t, vec2 v, float eps) {
     return v.x <= eps ? t : fall > 0.0 ? t + (v.x - 0.5 * eps) / fall * 0.9999996 : FAR;
 }
 
+// where the line of a value and its slope comes down to `level`
+float line_root(vec2 v, float level) { return v.y < 0.0 ? min(max(v.x - level, 0.0) / -v.y, FAR) : FAR; }
+
 // nothing is nearer than r
 float ball(float t, float r, float eps) { return r <= eps ? t : t + r * 0.9999996; }
 
@@ -47,15 +50,17 @@ float piece(float t, inout float ahead, float v, vec4 span, float least, float s
 }
 
 // outside a convex function, from within: how far its tangent, or the end of its box, says to look ...
-float chord_reach(float t, vec2 v, float box_end, float eps) {
+float chord_reach(float t, vec2 v, float box_end, float most, float eps) {
     float depth = 3.0 * eps - v.x;
-    return clamp(v.y > 1e-6 ? depth / v.y : FAR, 0.0, max(box_end - t, 0.0));
+    return clamp(v.y > 1e-6 ? depth / v.y : FAR, 0.0, min(max(box_end - t, 0.0), most));
 }
 
-// ... and how far is clear: all of it where its end is still within, else up to the chord's root
-float chord(float t, float value, float reach, float value_there, float eps) {
+// ... and how far is clear: all of it where its end is still within, else up to the chord's root. `most` is left as how
+// far to look next: half as far where that was little, for along a wall chords alone would creep.
+float chord(float t, float value, float reach, float value_there, float eps, inout float most) {
     float depth = 3.0 * eps - value, depth_there = 3.0 * eps - value_there;
     float clear = depth_there > 0.0 ? reach : reach * depth / max(depth - depth_there, 1e-30);
+    most = depth <= eps ? FAR : clear < 0.5 * reach ? 0.5 * reach : 2.0 * max(clear, eps);
     return depth <= eps ? t : t + max(clear, 0.5 * eps) * 0.9999996;
 }
 
@@ -68,4 +73,10 @@ vec2 box_interval(vec3 o, vec3 d, vec3 half_size) {
     vec3 enters = middle - reach, leaves = middle + reach;
     float first = max(max(enters.x, enters.y), enters.z), last = min(min(leaves.x, leaves.y), leaves.z);
     return first < last ? vec2(first, last) : vec2(FAR, -FAR);
+}
+
+// where one coordinate of a ray is between two
+vec2 slab_interval(float o, float d, vec2 between) {
+    vec2 ends = (between - o) / (abs(d) < 1e-18 ? 1e-18 : d);
+    return vec2(min(ends.x, ends.y), max(ends.x, ends.y));
 }

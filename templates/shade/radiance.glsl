@@ -22,13 +22,14 @@ void light_at(int light, vec3 p, out vec3 toward, out float reach, out vec3 irra
 }
 
 {% endif %}
+{% if not is_convex %}
 // How open the sky is over a point, from distances along the normal.
 float openness(vec3 p, vec3 normal) {
-{% if map %}
+{% if occluder %}
     vec4 heights = {{ occlusion_heights }}, left = heights, distances = vec4(0.0);
     int taps = 0;
     do {
-        distances = vec4(distances.yzw, map(p + left.x * normal));
+        distances = vec4(distances.yzw, {{ occluder }}(p + left.x * normal));
         left = left.yzwx;
         taps += 1;
     } while (taps < 4);
@@ -38,11 +39,16 @@ float openness(vec3 p, vec3 normal) {
 {% endif %}
 }
 
-{% if lights %}
+{% endif %}
+{% if shadows %}
 {% include "lib/clearance.glsl" %}
 
 {% endif %}
+{% if shadows %}
 // One loop, one call of trace: the ray of the eye first, then one to each light.
+{% elif lights %}
+// All of it is one convex solid: nothing stands between its surface and what lights it (Keinert 2014, section 3.5).
+{% endif %}
 vec4 radiance() {
     vec3 o, d;
     camera_ray(o, d);
@@ -55,7 +61,7 @@ vec4 radiance() {
     Surface s;
     bool hit = false;
     int light = -1;
-{% if lights %}
+{% if shadows %}
     float lift = 0.0;
 {% endif %}
     do {
@@ -70,14 +76,14 @@ vec4 radiance() {
             normal = normalize(s.field.xyz);
             normal = dot(normal, view) > 0.0 ? normal : normalize(normal - 1.001 * dot(normal, view) * view);
             travelled += t;
-{% if lights %}
+{% if shadows %}
             lift = clearance(s.field.w - slope * correction, steepness);
         } else if (t >= limit) {
             seen += irradiance * reflect_light(normal, view, toward, {{ surface.properties.color }}, {{ surface.properties.metallic }}, {{ surface.properties.roughness }});
 {% endif %}
         }
         light += 1;
-{% if lights %}
+{% if shadows %}
         o = p + lift * normal;
         light_at(light, o, toward, limit, irradiance);
         d = toward;
@@ -86,11 +92,18 @@ vec4 radiance() {
         cleared = -FAR;
 {% endif %}
 {% endif %}
-    } while (hit && light < {{ lights | length }});
+    } while (hit && light < {{ shadows | length }});
     if (!hit) {
         return vec4(sky(-view){% for light in suns %} + sun_disc(-view, {{ light.toward }}) * {{ light.radiance }}{% endfor %}, 0.0);
     }
-    seen += ambient(normal, view, UP, {{ surface.properties.color }}, {{ surface.properties.metallic }}, {{ surface.properties.roughness }}, openness(p, normal), {{ sky }});
+{% if lights and not shadows %}
+    do {
+        light_at(light, p, toward, limit, irradiance);
+        seen += irradiance * reflect_light(normal, view, toward, {{ surface.properties.color }}, {{ surface.properties.metallic }}, {{ surface.properties.roughness }});
+        light += 1;
+    } while (light < {{ lights | length }});
+{% endif %}
+    seen += ambient(normal, view, UP, {{ surface.properties.color }}, {{ surface.properties.metallic }}, {{ surface.properties.roughness }}, {{ "1.0" if is_convex else "openness(p, normal)" }}, {{ sky }});
 {% if transmission %}
     vec3 clear = transmit(normal, view, UP, {{ surface.properties.ior }}, {{ surface.properties.tint }}, {{ sky }});
     seen = mix(seen, clear, {{ surface.properties.transmission }});

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,8 +12,6 @@ import pytest
 import sdfc
 from sdfc.api import AOVS, RequestError, View
 from sdfc.api.renderer import jitter
-from sdfc.diagnostics import DeviceError
-from sdfc.gpu.device import open_device
 
 SCENE = """\
 param radius = 0.5 in 0.1..1.0
@@ -23,17 +20,6 @@ camera { eye: [0, 0, 4], target: [0, 0, 0], fov: 40deg }
 scene { sphere(radius: radius).rotate(y: turn) }
 """
 SIZE = (24, 16)
-
-
-@pytest.fixture
-def gl() -> None:
-    """OpenGL. Without it the test is skipped, unless SDFC_REQUIRE_GL=1 says that it must be there."""
-    try:
-        open_device().close()
-    except DeviceError as error:
-        if os.environ.get("SDFC_REQUIRE_GL") == "1":
-            raise
-        pytest.skip(f"no OpenGL here: {error}")
 
 
 @pytest.fixture
@@ -64,7 +50,7 @@ def test_compile_takes_texts_paths_and_names_of_files(tmp_path: Path, monkeypatc
 
 
 @pytest.mark.gpu
-def test_a_render_has_every_array(program: sdfc.Program, gl: None) -> None:
+def test_a_render_has_every_array(program: sdfc.Program, opengl: None) -> None:
     image = program.render(SIZE)
     assert image.size == SIZE
     assert image.colour.shape == (16, 24, 3) and image.colour.dtype == np.float32
@@ -77,14 +63,14 @@ def test_a_render_has_every_array(program: sdfc.Program, gl: None) -> None:
 
 
 @pytest.mark.gpu
-def test_an_image_that_was_not_asked_for_says_how_to_ask(program: sdfc.Program, gl: None) -> None:
+def test_an_image_that_was_not_asked_for_says_how_to_ask(program: sdfc.Program, opengl: None) -> None:
     image = program.render(SIZE, aovs=["depth"])
     with pytest.raises(AttributeError, match=r"normal was not rendered; ask for it: render\(aovs=\['normal'\]\)"):
         _ = image.normal
 
 
 @pytest.mark.gpu
-def test_an_image_saves_and_shows_itself(program: sdfc.Program, tmp_path: Path, gl: None) -> None:
+def test_an_image_saves_and_shows_itself(program: sdfc.Program, tmp_path: Path, opengl: None) -> None:
     image = program.render(SIZE, aovs=())
     assert image.pixels.shape == (16, 24, 3) and image.pixels.dtype == np.uint8
     image.save(tmp_path / "a.png")
@@ -96,7 +82,7 @@ def test_an_image_saves_and_shows_itself(program: sdfc.Program, tmp_path: Path, 
 
 
 @pytest.mark.gpu
-def test_params_are_numbers_inside_or_texts_as_typed(program: sdfc.Program, gl: None) -> None:
+def test_params_are_numbers_inside_or_texts_as_typed(program: sdfc.Program, opengl: None) -> None:
     def nearest(**params: float | str) -> float:
         return float(program.render(SIZE, params=params, aovs=["depth"]).depth.min())
 
@@ -129,14 +115,14 @@ def test_a_view_is_checked() -> None:
 
 
 @pytest.mark.gpu
-def test_progress_goes_from_nothing_to_all_over_samples_and_images(program: sdfc.Program, gl: None) -> None:
+def test_progress_goes_from_nothing_to_all_over_samples_and_images(program: sdfc.Program, opengl: None) -> None:
     shares: list[float] = []
     program.render(SIZE, samples=3, aovs=["depth"], progress=shares.append)
     assert shares == pytest.approx([0.25, 0.5, 0.75, 1.0])
 
 
 @pytest.mark.gpu
-def test_a_closed_program_opens_another_device(program: sdfc.Program, gl: None) -> None:
+def test_a_closed_program_opens_another_device(program: sdfc.Program, opengl: None) -> None:
     first = program.render(SIZE).colour
     program.close()
     np.testing.assert_array_equal(program.render(SIZE).colour, first)
@@ -150,7 +136,7 @@ def test_samples_spread_over_the_pixel_the_centre_first() -> None:
     assert counts.min() >= 2 and counts.max() <= 6
 
 
-def test_a_pixel_that_float32_cannot_resolve_is_noted(gl: None) -> None:
+def test_a_pixel_that_float32_cannot_resolve_is_noted(opengl: None) -> None:
     text = """camera { eye: [0.02, 0.02, 0.04], target: [0, 0.005, 0], fov: 40deg }
     scene { sphere(radius: 0.005) box(size: [200, 400, 200]).translate([500, 0, -2000]) }"""
     notes: list[str] = []
@@ -167,3 +153,13 @@ def test_the_cpu_has_one_tracer_and_says_so() -> None:
         for tracer in ("auto", "proven", "relaxed:omega=1.4", "segment"):
             program.render((4, 3), note=notes.append, backend="cpu", tracer=tracer)
     assert len(notes) == 2 and "'relaxed'" in notes[0] and "'segment'" in notes[1]
+
+
+def test_params_with_underscores_in_a_row_have_uniforms_that_glsl_allows(tmp_path: Path) -> None:
+    text = "param a__b = 0.5 in 0.2..0.8\nparam _r = 0.3 in 0.2..0.8\nscene { sphere(radius: a__b) box(size: [_r, 1, 2]) }"
+    with sdfc.compile(text) as program:
+        glsl = program.glsl("glsl450")
+        assert "set_a_b;" in glsl and "set_r;" in glsl and "__" not in glsl
+        assert np.isfinite(program.render(size=SIZE, backend="cpu", params={"a__b": 0.7}).colour).all()
+    with pytest.raises(sdfc.SceneError, match="params 'a__b' and 'a_b' would be one in GLSL"):
+        sdfc.compile("param a__b = 0.5 in 0..1\nparam a_b = 0.5 in 0..1\nscene { sphere(radius: a__b + a_b) }")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,8 +9,6 @@ import pytest
 from click.testing import CliRunner, Result
 
 from sdfc.cli.verbs import command
-from sdfc.diagnostics import DeviceError
-from sdfc.gpu.device import open_device
 
 SCENE = """\
 param radius = 0.5 in 0.1..1.0
@@ -34,14 +31,3 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
         return CliRunner().invoke(command, list(arguments), input=stdin, prog_name="sdfc")
 
     return invoke
-
-
-@pytest.fixture(scope="session")
-def gl() -> None:
-    """OpenGL. Without it the test is skipped, unless SDFC_REQUIRE_GL=1 says that it must be there."""
-    try:
-        open_device().close()
-    except DeviceError as error:
-        if os.environ.get("SDFC_REQUIRE_GL") == "1":
-            raise
-        pytest.skip(f"no OpenGL here: {error}")

@@ -92,7 +92,7 @@ def test_frames_are_the_pictures_that_render_makes(two: Program) -> None:
 
 @pytest.mark.gpu
 def test_all_frames_are_one_compile_and_one_frame_buffer(
-    gl: None, two: Program, monkeypatch: pytest.MonkeyPatch
+    opengl: None, two: Program, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from sdfc.gpu import frames
     from sdfc.gpu.frame import Frame
@@ -124,7 +124,7 @@ def test_all_frames_are_one_compile_and_one_frame_buffer(
 
 
 @pytest.mark.gpu
-def test_an_animation_that_is_left_gives_its_device_back(gl: None, two: Program) -> None:
+def test_an_animation_that_is_left_gives_its_device_back(opengl: None, two: Program) -> None:
     with two:
         images = two.frames(range(6), (24, 16), params={"a": "-1..1"}, backend="gl")
         next(images)

@@ -61,7 +61,9 @@ def test_a_reader_that_leaves_is_no_failure(scene: Path) -> None:
 
 @pytest.mark.gpu
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_stopped_while_rendering_it_leaves_nothing(scene: Path, gl: None, number: signal.Signals, code: int) -> None:
+def test_stopped_while_rendering_it_leaves_nothing(
+    scene: Path, opengl: None, number: signal.Signals, code: int
+) -> None:
     arguments = [*COMMAND, "render", str(scene), "-o", str(scene.with_name("out.png")), *SLOW]
     process = subprocess.Popen(arguments, stderr=subprocess.PIPE, text=True)
     time.sleep(1.5)
@@ -74,7 +76,7 @@ def test_stopped_while_rendering_it_leaves_nothing(scene: Path, gl: None, number
 
 
 @pytest.mark.gpu
-def test_no_progress_in_a_pipe(scene: Path, gl: None) -> None:
+def test_no_progress_in_a_pipe(scene: Path, opengl: None) -> None:
     done = run("render", scene, "-o", scene.with_name("out.png"), "--size", "400x300", "--samples", "60")
     assert (done.returncode, done.stderr, done.stdout) == (0, "", "")
 

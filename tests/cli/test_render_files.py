@@ -17,7 +17,7 @@ SMALL = ("--size", "48x32")
 
 
 @pytest.mark.gpu
-def test_a_picture_and_its_images_beside_it(run: Run, tmp_path: Path, gl: None) -> None:
+def test_a_picture_and_its_images_beside_it(run: Run, tmp_path: Path, opengl: None) -> None:
     result = run("render", "s.sdf", "-o", "out.png", *SMALL, "--aov", "depth,normal,position,material,steps")
     assert result.output == ""
     assert result.exit_code == 0
@@ -39,7 +39,7 @@ def test_a_picture_and_its_images_beside_it(run: Run, tmp_path: Path, gl: None) 
 
 
 @pytest.mark.gpu
-def test_rows_come_from_the_top(run: Run, tmp_path: Path, gl: None) -> None:
+def test_rows_come_from_the_top(run: Run, tmp_path: Path, opengl: None) -> None:
     scene = "camera { eye: [0, 0, 4], target: [0, 0, 0], fov: 40deg }\nscene { sphere(0.3).translate([0, 1, 0]) }\n"
     assert run("render", "-", "-o", "up.exr", *SMALL, "--aov", "depth", stdin=scene).exit_code == 0
     hit_rows = np.flatnonzero(np.isfinite(np.load(tmp_path / "up.depth.npy")).any(axis=1))
@@ -48,14 +48,14 @@ def test_rows_come_from_the_top(run: Run, tmp_path: Path, gl: None) -> None:
 
 @pytest.mark.gpu
 @pytest.mark.parametrize("file_format", ["npy", "exr", "png"])
-def test_every_format_of_images(run: Run, tmp_path: Path, gl: None, file_format: str) -> None:
+def test_every_format_of_images(run: Run, tmp_path: Path, opengl: None, file_format: str) -> None:
     arguments = ("--aov", "depth,normal,position,material,steps", "--aov-format", file_format)
     assert run("render", "s.sdf", "-o", f"o.{file_format}", *SMALL, *arguments).exit_code == 0
     assert len(list(tmp_path.glob(f"o*.{file_format}"))) == 6
 
 
 @pytest.mark.gpu
-def test_params_and_cameras_change_the_picture(run: Run, tmp_path: Path, gl: None) -> None:
+def test_params_and_cameras_change_the_picture(run: Run, tmp_path: Path, opengl: None) -> None:
     def hits(*arguments: str) -> int:
         assert run("render", "s.sdf", "-o", "a.png", *SMALL, "--aov", "depth", *arguments).exit_code == 0
         return int(np.isfinite(np.load(tmp_path / "a.depth.npy")).sum())
@@ -70,7 +70,7 @@ def test_params_and_cameras_change_the_picture(run: Run, tmp_path: Path, gl: Non
 
 
 @pytest.mark.gpu
-def test_samples_smooth_the_edge_and_keep_the_middle(run: Run, tmp_path: Path, gl: None) -> None:
+def test_samples_smooth_the_edge_and_keep_the_middle(run: Run, tmp_path: Path, opengl: None) -> None:
     from sdfc.api import compile
 
     with compile(tmp_path / "s.sdf") as program:
@@ -82,7 +82,7 @@ def test_samples_smooth_the_edge_and_keep_the_middle(run: Run, tmp_path: Path, g
 
 
 @pytest.mark.gpu
-def test_json_tells_what_was_written(run: Run, gl: None) -> None:
+def test_json_tells_what_was_written(run: Run, opengl: None) -> None:
     told = json.loads(run("render", "s.sdf", "-o", "a.png", *SMALL, "--aov", "depth", "--json").stdout)
     assert told["files"] == ["a.png", "a.depth.npy"]
     assert told["size"] == [48, 32]
@@ -91,7 +91,7 @@ def test_json_tells_what_was_written(run: Run, gl: None) -> None:
 
 
 @pytest.mark.gpu
-def test_a_picture_on_standard_output(run: Run, gl: None) -> None:
+def test_a_picture_on_standard_output(run: Run, opengl: None) -> None:
     result = run("render", "s.sdf", "-o", "-", *SMALL)
     assert result.stdout_bytes.startswith(b"\x89PNG") and result.stdout_bytes.endswith(b"IEND\xaeB`\x82")
 
@@ -105,7 +105,7 @@ def test_no_device_is_exit_3_and_nothing_is_written(run: Run, tmp_path: Path, mo
 
 
 @pytest.mark.gpu
-def test_refused_glsl_is_our_bug(run: Run, monkeypatch: pytest.MonkeyPatch, gl: None) -> None:
+def test_refused_glsl_is_our_bug(run: Run, monkeypatch: pytest.MonkeyPatch, opengl: None) -> None:
     monkeypatch.setattr("sdfc.pipeline.Compiled.glsl", lambda *_: "#version 450\nvoid main() { oops }\n")
     result = run("render", "s.sdf", "-o", "a.png", *SMALL, "--backend", "gl")
     assert result.exit_code == 70
@@ -114,7 +114,7 @@ def test_refused_glsl_is_our_bug(run: Run, monkeypatch: pytest.MonkeyPatch, gl: 
 
 @pytest.mark.gpu
 def test_a_frame_left_undrawn_is_the_devices_failure(
-    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, gl: None
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, opengl: None
 ) -> None:
     monkeypatch.setattr("sdfc.gpu.program.FragmentProgram.draw", lambda self: None)
     result = run("render", "s.sdf", "-o", "a.png", *SMALL, "--backend", "gl")

@@ -17,13 +17,17 @@ from sdfc.api.program import compile as compile_scene
 from sdfc.glsl.targets import TARGETS
 
 ROOT = Path(__file__).parent.parent.parent
-SCENES = sorted(p.name for p in (ROOT / "scenes").iterdir() if p.suffix in (".sdf", ".csg"))
 IS_FULL = os.environ.get("SDFC_FULL") == "1"
+# OpenSCAD's examples, of which the repository has three: where they lie beside it, all of them are wanted too
+MODELS = sorted((ROOT.parent / "shared" / "models").glob("*.csg")) if IS_FULL else []
+PATHS = {p.name: p for kind in ("sdf", "csg") for p in sorted((ROOT / "scenes").glob(f"[!.]*.{kind}"))}
+PATHS |= {p.name: p for p in MODELS}
+SCENES = tuple(PATHS)
 PARTS = ("field", "tracer", "full")
 SUFFIXES = {"fragment": "frag", "compute": "comp", "vertex": "vert"}
 
 # how a part becomes a shader: what stands in front of it
-_HEADS = {
+HEADS = {
     "glsl450": "#version 450 core\n",
     "glsl430": "#version 430 core\n",
     "glsl330": "#version 330 core\n",
@@ -35,18 +39,18 @@ _HEADS = {
     "uniform vec3 iResolution;\nuniform vec4 iMouse;\n",
     "three": "#version 300 es\nprecision highp float;\nprecision highp int;\n",
 }
-TEXTUAL = tuple(_HEADS)
+TEXTUAL = tuple(HEADS)
 
 
 @cache
 def program(name: str) -> Program:
-    """A scene of the repository, or of /work/shared's models."""
-    return compile_scene(ROOT / "scenes" / name)
+    """A scene of the table, compiled once."""
+    return compile_scene(PATHS[name])
 
 
 def rendered(name: str, size: tuple[int, int], **asked: Any) -> Image:
     """A picture by a device of its own, which is closed again: no other context is left to be current."""
-    with compile_scene(ROOT / "scenes" / name) as opened:
+    with compile_scene(PATHS[name]) as opened:
         return opened.render(size, backend="gl", **asked)
 
 
@@ -62,7 +66,8 @@ def cases() -> list[tuple[str, str]]:
 
 
 def prefix_of(scene: str) -> str:
-    return scene.partition(".")[0]
+    """What names begin with where nobody asks for anything else."""
+    return scene.partition(".")[0].replace("-", "_")
 
 
 def shaders(scene: str, target: str, part: str) -> dict[str, str]:
@@ -72,7 +77,7 @@ def shaders(scene: str, target: str, part: str) -> dict[str, str]:
         texts = {stage: of.glsl(target, stage) for stage in row.stages}
         if target == "shadertoy":
             ending = "out vec4 color;\nvoid main() { mainImage(color, gl_FragCoord.xy); }\n"
-            texts = {"fragment": _HEADS[target] + texts["fragment"] + ending}
+            texts = {"fragment": HEADS[target] + texts["fragment"] + ending}
         if target == "three":
             texts = three_stages(texts["fragment"])
         return {f"{prefix_of(scene)}.{SUFFIXES[stage]}": text for stage, text in texts.items()}
@@ -83,7 +88,7 @@ def shaders(scene: str, target: str, part: str) -> dict[str, str]:
     if part == "tracer":
         call += f" + {prefix_of(scene)}_trace(vec3(9.0), vec3(-1.0), 0.0, 99.0).t"
     main = f"layout(location = 0) out vec4 color;\nvoid main() {{ color = vec4({call}); }}\n"
-    return {f"{prefix_of(scene)}_{part}.frag": _HEADS[target] + text + main}
+    return {f"{prefix_of(scene)}_{part}.frag": HEADS[target] + text + main}
 
 
 def quoted(module: str, name: str) -> str:
@@ -97,8 +102,8 @@ def three_stages(module: str) -> dict[str, str]:
     """The stages of a three.js module, with what three.js puts in front of them."""
     vertex = "uniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nlayout(location = 0) in vec3 position;\n"
     return {
-        "vertex": _HEADS["three"] + vertex + quoted(module, "vertexShader"),
-        "fragment": _HEADS["three"] + quoted(module, "fragmentShader"),
+        "vertex": HEADS["three"] + vertex + quoted(module, "vertexShader"),
+        "fragment": HEADS["three"] + quoted(module, "fragmentShader"),
     }
 
 

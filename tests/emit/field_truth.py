@@ -2,17 +2,43 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import assert_never
 
 import numpy as np
+from emitting import program
 from numpy.typing import NDArray
 
-from sdfc.pipeline import Compiled
+from sdfc.pipeline import Compiled, Options
 from sdfc.plan.steps import All, Any, Ball, Blend, Chord, Closed, Many, Part, Step, Tangent, Within, may_flatten
 from sdfc.reference.formulas import Formulas
 from sdfc.shape.lower import FAR
 
 Array = NDArray[np.float64]
+POINTS = 4000
+
+
+@cache
+def compiled_field(scene: str) -> Compiled:
+    """The scene as the field part is made from it."""
+    return program(scene).compiled_as(Options(tracer="sphere", field=True, own_unit=False))
+
+
+def points_near(compiled: Compiled, seed: int) -> NDArray[np.float32]:
+    """(3, POINTS): in the scene's box and around it, in the scene's units."""
+    low, high = np.array(compiled.frame.box.lo), np.array(compiled.frame.box.hi)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low) + 0.05 * np.linalg.norm(high - low)
+    given = np.random.default_rng(seed).uniform(-1.3, 1.3, (3, POINTS))
+    return (middle[:, None] + half[:, None] * given).astype(np.float32)
+
+
+def agreement(compiled: Compiled, points: NDArray[np.float32], made: NDArray[np.floating]) -> float:
+    """By how much of the scene's size what was made (n,) at the points (3, n) is off, at most."""
+    frame = compiled.frame
+    own = (points.astype(np.float64) - np.array(frame.centre)[:, None]) / frame.radius
+    size = float(np.linalg.norm(np.array(frame.box.hi) - np.array(frame.box.lo)))
+    exact = np.clip(FieldTruth(compiled)(own) * frame.radius, -1e9, 1e9)
+    return float(np.abs(made - exact).max()) / size
 
 
 class FieldTruth:

@@ -9,29 +9,15 @@ import moderngl
 import numpy as np
 import pytest
 from emitting import IS_FULL, SCENES, prefix_of, program, rendered
-from field_truth import FieldTruth
+from field_truth import agreement, compiled_field, points_near
 
 from sdfc.api.request import View
-from sdfc.pipeline import Compiled, Options
+from sdfc.pipeline import Options
 
-POINTS = 4000
 SMALL = [s for s in SCENES if s not in ("city.sdf", "temple.sdf", "chess.sdf", "candle_stand.csg")]
 TRACED = SCENES if IS_FULL else ["csg5.sdf", "die.sdf", "blobs.sdf", "spheres.sdf", "gyroid.sdf"]
 
 pytestmark = pytest.mark.gpu
-
-
-def compiled_field(scene: str) -> Compiled:
-    """The scene as the field part is made from it."""
-    return program(scene).compiled_as(Options(tracer="sphere", field=True, own_unit=False))
-
-
-def points_near(compiled: Compiled, seed: int) -> np.ndarray[Any, Any]:
-    """(3, POINTS), float32: in the scene's box and around it, in the scene's units."""
-    low, high = np.array(compiled.frame.box.lo), np.array(compiled.frame.box.hi)
-    middle, half = 0.5 * (low + high), 0.5 * (high - low) + 0.05 * np.linalg.norm(high - low)
-    given = np.random.default_rng(seed).uniform(-1.3, 1.3, (3, POINTS))
-    return (middle[:, None] + half[:, None] * given).astype(np.float32)
 
 
 def run(gl: moderngl.Context, text: str, body: str, given: np.ndarray[Any, Any], size: int) -> np.ndarray[Any, Any]:
@@ -91,12 +77,7 @@ def asked(
 @pytest.mark.parametrize("scene", SCENES if IS_FULL else SMALL)
 def test_fields_agree_with_float64(scene: str, gl: moderngl.Context, values: dict[str, Any]) -> None:
     points, made = asked(scene, gl, values)
-    compiled = compiled_field(scene)
-    frame, truth = compiled.frame, FieldTruth(compiled)
-    own = (points.astype(np.float64) - np.array(frame.centre)[:, None]) / frame.radius
-    size = float(np.linalg.norm(np.array(frame.box.hi) - np.array(frame.box.lo)))
-    exact = np.clip(truth(own) * frame.radius, -1e9, 1e9)
-    assert np.abs(made[0] - exact).max() <= 1e-5 * size
+    assert agreement(compiled_field(scene), points, made[0]) <= 1e-5
     assert ((made[0] > 0.0).mean() > 0.02) and ((made[0] < 0.0).sum() > 5)
 
 
@@ -127,16 +108,16 @@ def test_gradients_are_those_of_the_field(scene: str, gl: moderngl.Context, valu
     assert (off < 0.02).mean() > 0.9
 
 
-def test_two_scenes_live_in_one_shader(gl: moderngl.Context, values: dict[str, Any]) -> None:
-    for part in ("field", "tracer"):
-        first, second = (program(s).glsl("glsl430", part=part, bake=True) for s in ("csg5.sdf", "die.sdf"))
-        points, alone = asked("csg5.sdf", gl, values)
-        body = "made[at] = csg5_sdf(p); made[at + 1u] = die_sdf(p); made[at + 2u] = float(die_material(p));"
-        both = run(gl, first + second, body, points, 3)
-        other = run(gl, second, "made[at] = die_sdf(p);", points, 1)
-        assert np.abs(both[0] - alone[0]).max() < 1e-5
-        assert np.abs(both[1] - other[0]).max() < 1e-5
-        assert len(np.unique(both[2])) > 2
+@pytest.mark.parametrize("part", ["field", "tracer"])
+def test_two_scenes_live_in_one_shader(part: str, gl: moderngl.Context, values: dict[str, Any]) -> None:
+    first, second = (program(s).glsl("glsl430", part=part, bake=True) for s in ("csg5.sdf", "die.sdf"))
+    points, alone = asked("csg5.sdf", gl, values)
+    body = "made[at] = csg5_sdf(p); made[at + 1u] = die_sdf(p); made[at + 2u] = float(die_material(p));"
+    both = run(gl, first + second, body, points, 3)
+    other = run(gl, second, "made[at] = die_sdf(p);", points, 1)
+    assert np.abs(both[0] - alone[0]).max() < 1e-5
+    assert np.abs(both[1] - other[0]).max() < 1e-5
+    assert len(np.unique(both[2])) > 2
 
 
 @pytest.mark.parametrize("scene", TRACED)
@@ -163,7 +144,7 @@ def test_tracers_find_what_the_renderer_finds(scene: str, gl: moderngl.Context) 
     depth, material = image.depth.reshape(-1), image.aovs["material"].reshape(-1)
     both = np.isfinite(depth) & (made[0] >= 0.0)
     assert (np.isfinite(depth) != (made[0] >= 0.0)).mean() < 0.004, "silhouettes apart, they see the same"
-    assert both.mean() > 0.1
+    assert both.sum() > 50
     near = np.abs(made[0] - depth)[both] < 2e-3 * frame.radius
     assert near.mean() > 0.995
     normals = image.normal.reshape(-1, 3).T

@@ -8,7 +8,20 @@ from pathlib import Path
 
 import moderngl
 import pytest
-from emitting import PARTS, ROOT, TEXTUAL, assert_valid, cases, program, shaders
+from emitting import (
+    HEADS,
+    IS_FULL,
+    PARTS,
+    ROOT,
+    SCENES,
+    TEXTUAL,
+    assert_valid,
+    cases,
+    prefix_of,
+    program,
+    quoted,
+    shaders,
+)
 
 from sdfc.api.program import compile as compile_scene
 from sdfc.api.request import RequestError
@@ -42,12 +55,12 @@ def test_the_driver_takes_it(scene: str, target: str, part: str, gl: moderngl.Co
 def test_a_file_is_the_same_every_time_and_tells_what_it_needs(target: str, part: str) -> None:
     if part in TARGETS[target].refused:
         with pytest.raises(RequestError, match=f"target '{target}' has no part '{part}'"):
-            program("die.sdf").glsl(target, part=part)
+            program("blobs.sdf").glsl(target, part=part)
         return
-    first = program("die.sdf").glsl(target, part=part)
-    assert first == compile_scene(ROOT / "scenes" / "die.sdf").glsl(target, part=part)
-    assert "0.488692" in first  # the default of `spin`
-    assert "-2.51" in first  # the bounds
+    first = program("blobs.sdf").glsl(target, part=part)
+    assert first == compile_scene(ROOT / "scenes" / "blobs.sdf").glsl(target, part=part)
+    assert "0.55" in first  # the default of `blend`
+    assert "-3.025" in first  # the bounds
 
 
 def test_parts_give_nothing_to_the_shader_but_prefixed_names() -> None:
@@ -64,6 +77,22 @@ def test_only_what_is_used_is_written() -> None:
     items = parse(program("csg5.sdf").glsl("glsl450", part="field"))
     public = ["csg5_sdf", "csg5_gradient", "csg5_material", "csg5_properties"]
     assert len(pruned(items, public)) == len(items)
+
+
+@pytest.mark.parametrize("part", ["field", "tracer"])
+def test_what_a_param_decides_is_computed_once_in_a_function(part: str) -> None:
+    """However many pips the dice have: no function takes the cosine of one angle twice."""
+    for item in parse(program("die.sdf").glsl(part=part)):
+        asked = re.findall(r"\b(?:cos|sin)\([^()]*spin[^()]*\)", item.text)
+        assert len(asked) == len(set(asked)), item.names
+
+
+@pytest.mark.parametrize("scene", ["csg5.sdf", "die.sdf"])
+def test_every_material_is_listed_once_where_nothing_blends(scene: str) -> None:
+    text = program(scene).glsl(part="field")
+    made = re.findall(rf"return {prefix_of(scene)}_Properties\(.*", text)
+    assert len(made) == len(set(made)) == len(program(scene).compiled().materials)
+    assert "color" not in text.partition(f"struct {prefix_of(scene)}_Nearest")[2].partition("}")[0]
 
 
 def test_baked_params_are_constants() -> None:
@@ -120,7 +149,7 @@ def test_vulkan_binds_explicitly() -> None:
 class TestGodot:
     """Its compiler is not to be had here: what of its rules can be read off the text."""
 
-    @pytest.mark.parametrize("scene", ["csg5.sdf", "die.sdf", "blobs.sdf", "spheres.sdf", "heart.sdf"])
+    @pytest.mark.parametrize("scene", SCENES if IS_FULL else ["csg5.sdf", "die.sdf", "blobs.sdf", "heart.sdf"])
     def test_structure(self, scene: str) -> None:
         text = program(scene).glsl("godot")
         assert text.startswith("shader_type spatial;\nrender_mode ")
@@ -149,6 +178,35 @@ class TestGodot:
             if "start_state" not in text:
                 main = f"out vec4 c;\nvoid main() {{ c = vec4({call.replace('(s, ', '(')}); }}\n"
             assert_valid({f"{p}.frag": f"#version 330 core\n{text}{main}"}, "glsl330", tmp_path)
+
+
+@pytest.mark.parametrize("part", ["field", "tracer"])
+@pytest.mark.parametrize(
+    "target", [name for name, row in TARGETS.items() if not row.is_description and not row.refused]
+)
+def test_two_scenes_are_pasted_into_one_shader(target: str, part: str, tmp_path: Path) -> None:
+    """As a stranger does it: what the command prints, one after the other; once even the same scene, twice."""
+    texts = [
+        program("column.sdf").glsl(target, part=part, prefix="a"),
+        program("blobs.sdf").glsl(target, part=part, prefix="b"),
+        program("column.sdf").glsl(target, part=part, prefix="a_2"),
+    ]
+    if target == "three":
+        texts = [quoted(text, "glsl") for text in texts]
+    if target == "godot":  # its own words for uniforms, and nobody to compile them
+        texts = [re.sub(r"^(uniform \w+ \w+)[^;]*;", r"\1;", text, flags=re.MULTILINE) for text in texts]
+    names = [set(globals_of(parse(text))) for text in texts]
+    assert not names[0] & names[1] and not names[0] & names[2]
+    calls = [
+        f"{x}_sdf(vec3(0.1)) + {x}_gradient(vec3(0.2)).x + {x}_properties(vec3(0.3)).ior" for x in ("a", "b", "a_2")
+    ]
+    if part == "tracer" and target != "godot":
+        calls += [f"{x}_trace(vec3(9.0), vec3(-1.0), 0.0, 99.0).t" for x in ("a", "b", "a_2")]
+    main = f"layout(location = 0) out vec4 color;\nvoid main() {{ color = vec4({' + '.join(calls)}); }}\n"
+    # in Vulkan every block of uniforms needs a place of its own, as the text says
+    bound = "".join(f"#define {x}_BINDING {i}\n" for i, x in enumerate(("A", "B", "A_2"))) if target == "vulkan" else ""
+    text = HEADS.get(target, HEADS["glsl330"]) + bound + "".join(texts) + main
+    assert_valid({"both.frag": text}, target, tmp_path)
 
 
 def test_a_material_may_be_computed_from_params(tmp_path: Path) -> None:

@@ -178,3 +178,18 @@ def test_a_box_that_float32_cannot_hold_is_none() -> None:
         shape = world.apply("twist", shape)
     box = world.bounds.box(shape)
     assert box.hi[0] == math.inf and box.hi[1] == 0.5
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=6, max_size=6))
+def test_a_rounded_box_holds_the_box_and_hardly_more(ends: list[float]) -> None:
+    box = Box(tuple(map(min, ends[:3], ends[3:])), tuple(map(max, ends[:3], ends[3:])))
+    wide = box.rounded()
+    assert all(a <= b for a, b in zip(wide.lo, box.lo, strict=True))
+    assert all(a >= b for a, b in zip(wide.hi, box.hi, strict=True))
+    assert max(b - a for a, b in zip(wide.lo, box.lo, strict=True)) <= 4e-12 * max(map(abs, ends)) + 1e-12
+
+
+def test_boxes_that_rounding_tells_apart_are_one_rounded() -> None:
+    for size in (0.5, 0.6, 1.0, 0.1, 3.0):
+        boxes = {Box((-size * (1 + n * 1e-16),) * 3, (size * (1 + n * 1e-16),) * 3).rounded() for n in range(-4, 5)}
+        assert len(boxes) == 1

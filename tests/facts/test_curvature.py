@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shape_trees import SPAN, Menu, World, checked, points_around, profiles, seeds, solids, some_params
 
-from sdfc.facts.curvature import convex_shapes
+from sdfc.facts.curvature import convex_shapes, is_convex_solid
 from sdfc.shape.graph import Shape, topological
 
 
@@ -22,11 +22,26 @@ def check_convex(world: World, shape: Shape, seed: int) -> None:
     assert between[worst] <= chord[worst] + 1e-9, (a[:, worst], b[:, worst])
 
 
+def check_convex_solid(world: World, shape: Shape, seed: int) -> None:
+    """Whatever is between two points of the solid is in it."""
+    if not is_convex_solid(shape):
+        return
+    generator = np.random.default_rng(seed)
+    params = some_params(generator)
+    points = points_around(generator, 3000, shape.dimension)
+    inside = points[:, world.value(shape, points, params) < 0.0]
+    if inside.shape[1] > 1:
+        a, b = inside, inside[:, generator.permutation(inside.shape[1])]
+        share = generator.uniform(0, 1, a.shape[1])
+        assert (world.value(shape, share * a + (1 - share) * b, params) <= 1e-9).all()
+
+
 def check_all(world: World, root: Shape, seed: int) -> None:
     convex = convex_shapes(root)
     for shape in topological(root):
         if shape.id in convex:
             check_convex(world, shape, seed)
+    check_convex_solid(world, root, seed)
 
 
 @checked
@@ -51,6 +66,18 @@ def test_solids_that_are_often_convex(data: st.DataObject, seed: int) -> None:
 def test_profiles(data: st.DataObject, seed: int) -> None:
     world = World()
     check_all(world, data.draw(profiles(world)), seed)
+
+
+def test_which_solids_are_convex() -> None:
+    """A gauge's solid is, but not all that is made of it; one leaf that is not spoils an intersection."""
+    world = World()
+    egg, ball, ring = world.apply("ellipsoid"), world.apply("sphere"), world.apply("torus")
+    meet = world.shapes.intersection([egg, world.at(0.2, 0, 0, ball)], SPAN)
+    for shape in (egg, meet, world.at(0.1, 0, 0, meet), world.shapes.union([meet], SPAN)):
+        assert is_convex_solid(shape)
+    for shape in (ring, world.apply("round", egg), world.shapes.intersection([egg, ring], SPAN)):
+        assert not is_convex_solid(shape)
+    assert not is_convex_solid(world.shapes.union([egg, ball], SPAN))
 
 
 def test_which_are_convex() -> None:

@@ -20,7 +20,8 @@ from shape_trees import (
     some_params,
 )
 
-from sdfc.diagnostics import SceneError
+from sdfc import pipeline
+from sdfc.diagnostics import SceneError, Source
 from sdfc.facts.box import Box, everything
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.shape.graph import Shape
@@ -149,6 +150,13 @@ def test_where_there_is_no_bound_the_field_is_named(text: str, words: str) -> No
     assert caught.value.diagnostics[0].span is shape.span
     hint = str(caught.value.diagnostics[0].hint)
     assert "claim one" in hint and ("& box" in hint) == ("no bounds" in words)  # no box where one stands
+
+
+def test_bounds_of_the_solid_alone_do_not_bound_its_blends() -> None:
+    field = "field wild() = d / (1 + abs(d)) where d = length(p) - 1 bounds [-1, -1, -1] .. [1, 1, 1]"
+    text = f"{field}\nscene {{ union(blend: 0.1) {{ wild() box(size: [1, 1, 1]).translate([1, 0, 0]) }} }}"
+    with pytest.raises(SceneError, match=r"slope of 'wild' .* its bounds say nothing of where it is above zero"):
+        pipeline.compile_scene(pipeline.load(Source("wild.sdf", text), None))
 
 
 def test_a_field_of_the_scenes_params_alone() -> None:

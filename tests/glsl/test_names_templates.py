@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,6 @@ from glsl_scenes import ENTRIES, ROOT, SMALL, compiled_file, compiled_text, temp
 
 from sdfc.api.renderer import GlRenderer, Shot
 from sdfc.api.request import View
-from sdfc.diagnostics import DeviceError
 from sdfc.glsl import names
 from sdfc.pipeline import Compiled
 from sdfc.tracers import TRACERS
@@ -42,6 +40,7 @@ def validator() -> str:
 def assert_valid(compiled: Compiled, validator: str, folder: Path) -> None:
     texts = {f"{entry}.{SUFFIXES[stage]}": compiled.glsl(entry, stage) for entry, stage in ENTRIES}
     texts |= {"depth.frag": compiled.glsl("depth", "fragment"), "camera.vert": compiled.vertex()}
+    texts |= {f"web_{entry}.frag": compiled.web(entry) for entry in ("picture", "inspect")}
     for name, text in texts.items():
         (folder / name).write_text(text)
     run = subprocess.run([validator, *texts], cwd=folder, capture_output=True, text=True, check=False)
@@ -57,19 +56,6 @@ def test_small_scenes_are_valid(name: str, validator: str, tmp_path: Path) -> No
 @pytest.mark.parametrize("path", SCENES, ids=lambda p: p.name)
 def test_scenes_are_valid(path: Path, validator: str, tmp_path: Path) -> None:
     assert_valid(compiled_file(path), validator, tmp_path)
-
-
-@pytest.fixture(scope="module")
-def renderer() -> Iterator[GlRenderer]:
-    """A renderer; skipped without OpenGL, unless SDFC_REQUIRE_GL=1."""
-    try:
-        opened = GlRenderer()
-    except DeviceError as error:
-        if os.environ.get("SDFC_REQUIRE_GL") == "1":
-            raise
-        pytest.skip(f"no OpenGL here: {error}")
-    yield opened
-    opened.close()
 
 
 # words of GLSL, of the templates, of the generated text, and of the standard library

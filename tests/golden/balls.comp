@@ -174,7 +174,7 @@ float march(vec3 o, vec3 d, float start, float limit) {
     } while (next > t && next < limit && count < MOST_STEPS);
     unfinished = next > t && next < limit ? 1.0 : 0.0;
     float near = 64.0 * tolerance(t);
-    return next > t && (next >= limit || next - t > near) ? FAR : t;
+    return next >= limit || next - t > near ? FAR : t;
 }
 
 // requires: events or march (generated)

@@ -45,13 +45,18 @@ float tolerance(float t) { return max(rounding(t), 0.015625 * (cone.x + cone.y *
 // Steps of what has no closed form: each answers with the next parameter that is worth a look, t itself for a hit.
 const int MOST_STEPS = 2048;  // all loops of a pixel together stay below 65 535, where llvmpipe stops them
 
+// where the line of a value and its slope comes down to `level`
+float line_root(vec2 v, float level) { return v.y < 0.0 ? min(max(v.x - level, 0.0) / -v.y, FAR) : FAR; }
+
 // nothing is nearer than r
 float ball(float t, float r, float eps) { return r <= eps ? t : t + r * 0.9999996; }
 
-// ... and how far is clear: all of it where its end is still within, else up to the chord's root
-float chord(float t, float value, float reach, float value_there, float eps) {
+// ... and how far is clear: all of it where its end is still within, else up to the chord's root. `most` is left as how
+// far to look next: half as far where that was little, for along a wall chords alone would creep.
+float chord(float t, float value, float reach, float value_there, float eps, inout float most) {
     float depth = 3.0 * eps - value, depth_there = 3.0 * eps - value_there;
     float clear = depth_there > 0.0 ? reach : reach * depth / max(depth - depth_there, 1e-30);
+    most = depth <= eps ? FAR : clear < 0.5 * reach ? 0.5 * reach : 2.0 * max(clear, eps);
     return depth <= eps ? t : t + max(clear, 0.5 * eps) * 0.9999996;
 }
 
@@ -196,13 +201,15 @@ void smooth_union_1_closer(inout vec4 bracket, float level, vec2 v_sphere_1, vec
     float beyond = chord + (chord - left) * at_chord / max(left_value - at_chord, 1e-30);
     bool closer = at_chord > 0.0 && left_value > at_chord && beyond < bracket.y;
     float right = closer ? beyond : bracket.y;
-    bracket = vec4(chord, right, max(at_chord, 0.0), closer ? smooth_union_1_ahead(right, v_sphere_1, v_box_1) - level : bracket.w);
+    float right_value = closer ? smooth_union_1_ahead(right, v_sphere_1, v_box_1) - level : bracket.w;
+    bool over = at_chord < -1e-6 * (1.0 + left_value);
+    bracket = over ? vec4(left, chord, left_value, at_chord) : vec4(chord, right, max(at_chord, 0.0), right_value);
 }
 float smooth_union_1_clear(float value, float level, vec2 v_sphere_1, vec2 v_box_1) {
-    vec4 bracket = vec4(0.0, 4.0 * (value - level) + 1.0, value - level, 0.0);
+    v_sphere_1.y -= 2.4e-7; v_box_1.y -= 2.4e-7;  // no line falls less than its slope may be off by
+    vec4 bracket = vec4(0.0, min(line_root(v_sphere_1, level), line_root(v_box_1, level)), value - level, 0.0);
     bracket.w = smooth_union_1_ahead(bracket.y, v_sphere_1, v_box_1) - level;
     if (bracket.w > 0.0) return bracket.y;
-    smooth_union_1_closer(bracket, level, v_sphere_1, v_box_1);
     smooth_union_1_closer(bracket, level, v_sphere_1, v_box_1);
     smooth_union_1_closer(bracket, level, v_sphere_1, v_box_1);
     return bracket.x * 0.9999996;
@@ -228,7 +235,7 @@ float march(vec3 o, vec3 d, float start, float limit) {
     } while (next > t && next < limit && count < MOST_STEPS);
     unfinished = next > t && next < limit ? 1.0 : 0.0;
     float near = 64.0 * tolerance(t);
-    return next > t && (next >= limit || next - t > near) ? FAR : t;
+    return next >= limit || next - t > near ? FAR : t;
 }
 
 // requires: events or march (generated)

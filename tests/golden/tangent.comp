@@ -88,12 +88,6 @@ vec2 rounded_box_slope(vec3 p, vec3 d, vec3 size, float radius) {
 }
 
 // A box with rounded edges; `size` is of the whole.
-float rounded_box(vec3 p, vec3 size, float radius) {
-    vec3 q = abs(p) - size / 2.0 + radius;
-    return length(max(q, 0.0)) + min(max(q.x, max(q.y, q.z)), 0.0) - radius;
-}
-
-// A box with rounded edges; `size` is of the whole.
 vec4 rounded_box_surface(vec3 p, vec3 size, float radius) {
     vec3 q = abs(p) - size / 2.0 + radius;
     float d = max(q.y, q.z);
@@ -107,11 +101,6 @@ vec4 rounded_box_surface(vec3 p, vec3 size, float radius) {
     vec3 q_3 = vec3(below ? chosen : 0.0, below_2 ? chosen_2 : 0.0, below_2 ? 0.0 : chosen_2);
     vec3 q_4 = (q_2 * (1.0 / max(len, 1e-30)) * max(sign(q), 0.0) + q_3) * sign(sign(p) + 0.5);
     return vec4(q_4.xyz, len + min(d_2, 0.0) - radius);
-}
-
-float map(vec3 p) {
-    vec3 q_rounded_box_1 = vec3(0.8660254 * p.x + (-0.5 * p.z), p.y, 0.5 * p.x + 0.8660254 * p.z);
-    return rounded_box(q_rounded_box_1, vec3(0.9886885, 0.5932131, 0.9886885), param_edge * 0.9886885);
 }
 
 // the first hit of what is marched, before `limit`
@@ -131,7 +120,7 @@ float march(vec3 o, vec3 d, float start, float limit) {
     } while (next > t && next < limit && count < MOST_STEPS);
     unfinished = next > t && next < limit ? 1.0 : 0.0;
     float near = 64.0 * tolerance(t);
-    return next > t && (next >= limit || next - t > near) ? FAR : t;
+    return next >= limit || next - t > near ? FAR : t;
 }
 
 // requires: events or march (generated)
@@ -217,13 +206,6 @@ vec3 reflect_light(vec3 normal, vec3 view, vec3 light, vec3 color, float metalli
     return (diffuse + one_bounce + more_bounces) * n_dot_l;
 }
 
-// Ambient occlusion (1 is open) from distances at heights over the surface, lowest first, same unit.
-float occlusion_weight(vec4 distances, vec4 heights) {
-    vec4 q = distances / max(heights, 1e-12);
-    float product = 0.88 * dot(1.0 - clamp(q / clamp(q.x, 0.25, 1.0), 0.0, 1.0), vec4(0.1, 0.3, 0.33, 0.27));
-    return clamp(1.0 - product, 0.0, 1.0);
-}
-
 // Radiance (VEC3) from the sky; `occlusion` is 1 in the open and 0 where no sky is seen.
 vec3 ambient(vec3 normal, vec3 view, vec3 up, vec3 color, float metallic, float roughness, float occlusion, vec3 zenith, vec3 horizon, vec3 ground) {
     float rough = clamp(roughness, 0.09, 1.0);
@@ -306,27 +288,7 @@ void light_at(int light, vec3 p, out vec3 toward, out float reach, out vec3 irra
     irradiance = vec3(4.4, 3.916, 3.256);
 }
 
-// How open the sky is over a point, from distances along the normal.
-float openness(vec3 p, vec3 normal) {
-    vec4 heights = vec4(0.012, 0.045, 0.11, 0.22), left = heights, distances = vec4(0.0);
-    int taps = 0;
-    do {
-        distances = vec4(distances.yzw, map(p + left.x * normal));
-        left = left.yzwx;
-        taps += 1;
-    } while (taps < 4);
-    return occlusion_weight(distances, heights);
-}
-
-// How far along the normal a secondary ray starts: twice what the point at hand may be off the surface, `residual` the value
-// there where that is more, but no more than half a pixel (Keinert 2014, section 3.3). A field that is flatter than a
-// distance is off by more than it says.
-float clearance(float residual, float steepness) {
-    float off = min(abs(residual), cone.x + cone.y * travelled);
-    return 2.0 * max(max(0.5 * 7.6293945e-6, 2.0 * tolerance(0.0)), off) / clamp(steepness, 0.05, 1.0);
-}
-
-// One loop, one call of trace: the ray of the eye first, then one to each light.
+// All of it is one convex solid: nothing stands between its surface and what lights it (Keinert 2014, section 3.5).
 vec4 radiance() {
     vec3 o, d;
     camera_ray(o, d);
@@ -336,7 +298,6 @@ vec4 radiance() {
     Surface s;
     bool hit = false;
     int light = -1;
-    float lift = 0.0;
     do {
         float t = trace(o, d, start, limit);
         if (light < 0) {
@@ -354,20 +315,18 @@ vec4 radiance() {
             normal = normalize(s.field.xyz);
             normal = dot(normal, view) > 0.0 ? normal : normalize(normal - 1.001 * dot(normal, view) * view);
             travelled += t;
-            lift = clearance(s.field.w - slope * correction, steepness);
-        } else if (t >= limit) {
-            seen += irradiance * reflect_light(normal, view, toward, vec3(0.48), 0.0, 0.5);
         }
         light += 1;
-        o = p + lift * normal;
-        light_at(light, o, toward, limit, irradiance);
-        d = toward;
-        start = 0.0;
-    } while (hit && light < 1);
+    } while (hit && light < 0);
     if (!hit) {
         return vec4(sky(-view) + sun_disc(-view, vec3(-0.12290758, 0.6691306, 0.73291063)) * (vec3(4.4, 3.916, 3.256)), 0.0);
     }
-    seen += ambient(normal, view, UP, vec3(0.48), 0.0, 0.5, openness(p, normal), vec3(0.21, 0.32, 0.52), vec3(0.86, 0.88, 0.91), vec3(0.23, 0.225, 0.22));
+    do {
+        light_at(light, p, toward, limit, irradiance);
+        seen += irradiance * reflect_light(normal, view, toward, vec3(0.48), 0.0, 0.5);
+        light += 1;
+    } while (light < 1);
+    seen += ambient(normal, view, UP, vec3(0.48), 0.0, 0.5, 1.0, vec3(0.21, 0.32, 0.52), vec3(0.86, 0.88, 0.91), vec3(0.23, 0.225, 0.22));
     return vec4(seen, 1.0);
 }
 

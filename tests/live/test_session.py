@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import ctypes
-import gc
-import resource
 import shutil
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-import moderngl
 import numpy as np
 import pytest
-from author import Author
+from author import BALLS, Author
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -27,20 +23,6 @@ pytestmark = pytest.mark.gpu
 ROOT = Path(__file__).parents[2]
 SCENES = ["csg5.sdf", "jewel.sdf", "blobs.sdf", "column.sdf", "lamp.sdf", "bracket.sdf"]
 SHARE = 0.01  # of the pixels: those on edges, where a rounding decides
-
-BALLS = """\
-param size = 0.5 in 0.1..1.0
-material red { color: #ff2010, roughness: 0.4 }
-field bump(height: number) = length(p) - height - 0.05 * sin(7 * p.x)
-def many = 3
-camera { eye: [0, 1, 4], target: [0, 0, 0], fov: 40deg }
-light sun { direction: [-1, -2, -1], intensity: 3.5 }
-scene {
-    union(for i in 0..many: sphere(radius: 0.25).translate([0.7 * i - 0.7, 0, 0])).material(red)
-    box(size: [size, 0.3, 0.3]).round(0.02).translate([0, 0.8, 0]).rotate(z: 10deg)
-    bump(0.3).translate([0, -0.8, 0])
-}
-"""
 
 
 def written(literal: Literal, factor: float) -> str:
@@ -70,7 +52,7 @@ def is_alike(a: Path, b: Path) -> bool:
     max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 )
 @given(st.data())
-def test_any_literal_edited_twice_is_as_if_compiled_anew(gl: None, data: st.DataObject) -> None:
+def test_any_literal_edited_twice_is_as_if_compiled_anew(opengl: None, data: st.DataObject) -> None:
     text = (ROOT / "scenes" / data.draw(st.sampled_from(SCENES), "scene")).read_text()
     index = data.draw(st.integers(0, len(read(text).literals) - 1), "literal")
     factors = data.draw(st.lists(st.sampled_from([0.6, 0.8, 0.95, 1.1, 1.5]), min_size=2, max_size=3), "factors")
@@ -227,44 +209,6 @@ def test_a_broken_scene_leaves_everything_as_it_was(author: Author) -> None:
         author.save(BALLS.replace("10deg", "14deg").replace("sphere", "spere"))
     assert author.picture.read_bytes() == before
     assert author.save(BALLS.replace("10deg", "14deg")).speed is Speed.NUMBERS
-
-
-def test_many_edits_leave_memory_and_objects_flat(author: Author, compiled: list[str]) -> None:
-    def objects() -> int:
-        gc.collect()
-        kinds = (moderngl.Program, moderngl.VertexArray, moderngl.Texture, moderngl.Framebuffer)
-        return sum(isinstance(o, kinds) for o in gc.get_objects())
-
-    def round_of_edits(number: int) -> None:
-        for i in range(6):
-            author.save(BALLS.replace("scene {", f"scene {{ sphere(0.1).translate([0, 0, {number}.{i + 1}1])"))
-            for k in range(20):
-                author.save(BALLS.replace("10deg", f"{10 + 0.1 * k + 0.01 * i:.3f}deg"))
-
-    author.save(BALLS)
-    round_of_edits(0)
-    before, memory = objects(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    names = names_in_use(author)
-    so_far = len(compiled)
-    round_of_edits(1)
-    round_of_edits(2)
-    assert len(compiled) > so_far + 6, "structural edits were compiled"
-    assert objects() <= before
-    assert 0 < names_in_use(author) <= names
-    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss < memory + 64 * 1024  # KiB
-
-
-def names_in_use(author: Author) -> int:
-    """How many objects the driver has. It may give each new one a new name."""
-    context = author.session.renderer.device.context  # type: ignore[attr-defined]
-    texture = context.texture((1, 1), 4)
-    program = context.program(vertex_shader="#version 450\nvoid main() { gl_Position = vec4(0.0); }\n")
-    newest = max(texture.glo, program.glo)
-    texture.release()
-    program.release()
-    library = ctypes.CDLL("libGL.so.1")
-    ask = [getattr(library, f"glIs{kind}") for kind in ("Texture", "Framebuffer", "Program", "Shader", "VertexArray")]
-    return sum(bool(is_one(name) & 0xFF) for is_one in ask for name in range(1, newest + 1))
 
 
 @pytest.fixture

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import os
-import queue
 import signal
 import subprocess
 import sys
-import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from watching import PATIENCE, Watching
 
 pytestmark = pytest.mark.gpu
-PATIENCE = 30.0  # seconds, for a machine with much else to do
 SCENE = """\
 import "part.sdf"
 camera { eye: [0, 1, 4], target: [0, 0, 0], fov: 40deg }
@@ -24,46 +21,8 @@ scene { ball(0.5) | instances("t.csv", sphere(radius: row.r).translate([row.x, 0
 """
 
 
-class Watching:
-    """The process, and what it says."""
-
-    def __init__(self, folder: Path, *arguments: str) -> None:
-        self.folder = folder
-        command = [sys.executable, "-m", "sdfc", "watch", "s.sdf", "-o", "o.png", "--size", "64x36", *arguments]
-        self.process = subprocess.Popen(
-            command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-        )
-        self.said: queue.Queue[str] = queue.Queue()
-        self.all: list[str] = []
-        threading.Thread(target=self._listen, daemon=True).start()
-
-    def _listen(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            self.said.put(line.rstrip("\n"))
-
-    def hears(self, words: str) -> str:
-        """The next line with these words in it; those before it are passed over."""
-        until = time.monotonic() + PATIENCE
-        while True:
-            try:
-                line = self.said.get(timeout=max(0.0, until - time.monotonic()))
-            except queue.Empty:
-                raise AssertionError(f"it never said {words!r}, but: {self.all}") from None
-            self.all.append(line)
-            if words in line:
-                return line
-
-    def picture(self) -> bytes:
-        return (self.folder / "o.png").read_bytes()
-
-    def ends(self, number: signal.Signals) -> int:
-        self.process.send_signal(number)
-        return self.process.wait(PATIENCE)
-
-
 @pytest.fixture
-def folder(gl: None, tmp_path: Path) -> Path:
+def folder(opengl: None, tmp_path: Path) -> Path:
     (tmp_path / "s.sdf").write_text(SCENE)
     (tmp_path / "part.sdf").write_text("def ball(r) = sphere(radius: r)\n")
     (tmp_path / "t.csv").write_text("r, x\n0.2, -1\n0.2, 1\n")
@@ -72,11 +31,8 @@ def folder(gl: None, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def watching(folder: Path) -> Iterator[Watching]:
-    made = Watching(folder)
-    yield made
-    if made.process.poll() is None:
-        made.process.kill()
-        made.process.wait()
+    with Watching(folder) as made:
+        yield made
 
 
 def in_place(path: Path, text: str) -> None:
@@ -144,8 +100,7 @@ def test_imports_and_tables_are_seen_and_errors_leave_the_picture(watching: Watc
 
 def test_it_begins_with_a_broken_scene_and_needs_no_restart(folder: Path) -> None:
     (folder / "s.sdf").write_text(SCENE.replace("part.sdf", "new/part.sdf"))
-    watching = Watching(folder)
-    try:
+    with Watching(folder) as watching:
         watching.hears("error: the file 'new/part.sdf' does not exist")
         assert not (folder / "o.png").exists()
         (folder / "new").mkdir()
@@ -155,8 +110,6 @@ def test_it_begins_with_a_broken_scene_and_needs_no_restart(folder: Path) -> Non
         watching.hears("cannot read 's.sdf'")
         (folder / "away").rename(folder / "s.sdf")
         watching.hears("nothing to draw")
-    finally:
-        watching.ends(signal.SIGINT)
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])

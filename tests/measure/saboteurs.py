@@ -84,6 +84,7 @@ SABOTEURS = {
             "repeat/around an axis",
             "twist/bent bar, 90*",
             "detail/displaced of 0.4",
+            "flat/a ball of fourth powers",
         ),
     ),
     "greedy": Saboteur(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -11,9 +10,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from sdfc.api.renderer import GlRenderer
 from sdfc.cli.verbs import command
-from sdfc.diagnostics import DeviceError
 from sdfc.measure.bench import contest
 from sdfc.measure.bench.record import Cell
 from sdfc.measure.bench.store import read
@@ -33,19 +30,8 @@ def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
     return lambda *arguments: CliRunner().invoke(command, ["bench", *arguments], prog_name="sdfc")
 
 
-@pytest.fixture(scope="module")
-def gl() -> None:
-    """OpenGL. Without it the test is skipped, unless SDFC_REQUIRE_GL=1 says that it must be there."""
-    try:
-        GlRenderer().close()
-    except DeviceError as error:
-        if os.environ.get("SDFC_REQUIRE_GL") == "1":
-            raise
-        pytest.skip(f"no OpenGL here: {error}")
-
-
 @pytest.mark.gpu
-def test_without_a_folder_it_prints_and_writes_nothing(bench: Bench, gl: None, tmp_path: Path) -> None:
+def test_without_a_folder_it_prints_and_writes_nothing(bench: Bench, opengl: None, tmp_path: Path) -> None:
     result = bench("ball.sdf", *SMALL, "--tolerances", "1")
     assert (result.exit_code, result.stderr) == (0, "")
     rows = [line.split("|")[1].strip() for line in result.stdout.splitlines() if line.startswith("| ")]
@@ -54,7 +40,7 @@ def test_without_a_folder_it_prints_and_writes_nothing(bench: Bench, gl: None, t
 
 
 @pytest.mark.gpu
-def test_a_folder_of_results_and_what_is_made_of_it(bench: Bench, gl: None, tmp_path: Path) -> None:
+def test_a_folder_of_results_and_what_is_made_of_it(bench: Bench, opengl: None, tmp_path: Path) -> None:
     result = bench("ball.sdf", *SMALL, "--budgets", "4,8", "-o", "one")
     assert result.exit_code == 0
     assert (tmp_path / "one" / "results.md").read_text() == result.stdout
@@ -81,7 +67,7 @@ def test_a_folder_of_results_and_what_is_made_of_it(bench: Bench, gl: None, tmp_
 
 @pytest.mark.gpu
 def test_without_matplotlib_it_says_so_and_goes_on(
-    bench: Bench, gl: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    bench: Bench, opengl: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     result = bench("ball.sdf", *SMALL, "--tolerances", "1", "-o", "one")
@@ -92,7 +78,7 @@ def test_without_matplotlib_it_says_so_and_goes_on(
 
 @pytest.mark.gpu
 def test_interrupted_it_keeps_what_there_is(
-    bench: Bench, gl: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    bench: Bench, opengl: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     frame_times, calls = contest.frame_times, []
 
@@ -119,6 +105,8 @@ def test_interrupted_it_keeps_what_there_is(
         (("ball.sdf", "--tracers", "sphere+prepas"), "no addition to a tracer 'prepas' (did you mean 'prepass'?)"),
         (("ball.sdf", "--tracers", ","), "there is nothing in the list"),
         (("ball.sdf", "--sizes", "big"), "'big' is not a size like 1280x720"),
+        (("ball.sdf", "--sizes", "0x3"), "a picture of 0x3 pixels has nothing in it"),
+        (("ball.sdf", "--grid", "0x3"), "a picture of 0x3 pixels has nothing in it"),
         (("ball.sdf", "--tolerances", "0"), "'0' is not above zero"),
         (("ball.sdf", "--budgets", "8,x"), "'x' is not a number of steps"),
         (("absent.sdf",), "'absent.sdf' does not exist"),

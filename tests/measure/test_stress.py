@@ -9,7 +9,6 @@ import json
 import os
 import re
 import shlex
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,34 +22,37 @@ import sdfc.tracers
 from sdfc.api.renderer import GlRenderer
 from sdfc.api.request import RequestError
 from sdfc.cli.verbs import command
-from sdfc.diagnostics import DeviceError
 from sdfc.glsl import assembly
 from sdfc.measure.picture import Tracing
 from sdfc.measure.stress import FAMILIES
 from sdfc.measure.stress.record import Case, Family, look, scene
 from sdfc.measure.stress.run import Outcome, chosen, stressed
 from sdfc.measure.stress.trees import grown
-from sdfc.measure.stress.way import ways
+from sdfc.measure.way import ways
 from sdfc.tracers import TRACERS
 
 PAGE = Path(__file__).parent.parent.parent / "docs" / "stress.md"
 FULL = os.environ.get("SDFC_FULL") == "1"
 SIZE = (48, 27) if FULL else (12, 8)
-UNSOLVED: dict[str, str] = {}  # why, by name; what is said here and does not happen fails too
+_LEVEL = "where a field has no slope, its zero is as uncertain as float32's slopes are"
+_SUNK = "what cuts is looked for a little inside what is cut, by a measure that is long where the field is flat"
+_LINES = "lines below an operand that is flat, or steep elsewhere, are far below it"
+UNSOLVED: dict[str, str] = {  # why, by name; what is said here and does not happen fails too
+    "flat/a ball, cubed": _LEVEL,
+    "flat/a ball, cubed from far away": _LEVEL,
+    "flat/a ball, cubed along the top": _LEVEL,
+    "flat/a ball of fourth powers cut": _SUNK,
+    "flat/a block of eighth powers cut": _SUNK,
+    "flat/a block of eighth powers in a blend": _LINES,
+    "flat/a ball that is flat half-way in a blend": _LINES,
+    "flat/a ball that is steep behind in a blend": _LINES,
+}
 WAYS = ("proven", "proven+prepass", "proven+rays") if FULL else ("proven",)
 
 
 @pytest.fixture(scope="session")
-def tracing() -> Iterator[Tracing]:
-    """A renderer. Without OpenGL the test is skipped, unless SDFC_REQUIRE_GL=1 says that it must be there."""
-    try:
-        renderer = GlRenderer()
-    except DeviceError as error:
-        if os.environ.get("SDFC_REQUIRE_GL") == "1":
-            raise
-        pytest.skip(f"no OpenGL here: {error}")
-    yield Tracing(renderer)
-    renderer.close()
+def tracing(renderer: GlRenderer) -> Tracing:
+    return Tracing(renderer)
 
 
 def stress(tracing: Tracing, families: tuple[Family, ...], *specs: str) -> list[Outcome]:
@@ -113,12 +115,6 @@ def test_names_are_of_something() -> None:
         chosen(("twits",))
     with pytest.raises(RequestError, match="no case 'nan/nothing'"):
         chosen(("nan/nothing",))
-    with pytest.raises(RequestError, match=r"\+prepas"):
-        ways(("proven+prepas",))
-    with pytest.raises(RequestError, match="no tracer"):
-        ways(("prove",))
-    assert [way.name for way in ways(("proven+rays+prepass", "proven", "proven"))] == ["proven+prepass+rays", "proven"]
-    assert [way.name for way in ways(())] == list(TRACERS)
 
 
 def test_the_middle_ray_goes_where_the_camera_looks(tracing: Tracing) -> None:
@@ -139,7 +135,7 @@ def test_the_same_seed_grows_the_same_scenes() -> None:
 @pytest.mark.gpu
 @pytest.mark.parametrize("saboteur", ["absolute"], indirect=True)
 def test_a_run_by_the_command_line(
-    gl_context: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, saboteur: tuple[str, Saboteur]
+    opengl: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, saboteur: tuple[str, Saboteur]
 ) -> None:
     """A failure is told, drawn and counted; where the tracer says that it is weak it is no failure."""
     name, _ = saboteur
@@ -178,9 +174,7 @@ def examples() -> list[str]:
 
 @pytest.mark.gpu
 @pytest.mark.parametrize("example", examples())
-def test_the_examples_of_the_page(
-    gl_context: object, example: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_examples_of_the_page(opengl: None, example: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     result = CliRunner().invoke(command, shlex.split(example)[1:], prog_name="sdfc")
     assert result.exit_code == 0, result.output

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -12,7 +13,7 @@ import sdfc
 from sdfc import pipeline
 from sdfc.api import choose
 from sdfc.api.renderer import GlRenderer
-from sdfc.diagnostics import DeviceError, Source
+from sdfc.diagnostics import Source
 from sdfc.plan.candidates import UNMEASURED, Candidate, candidates
 from sdfc.plan.plan import Plan
 from sdfc.scene.model import Scene
@@ -44,19 +45,11 @@ def ways(text: str) -> list[Candidate]:
 
 
 @pytest.fixture
-def renderer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[GlRenderer]:
+def renderer(opengl: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[GlRenderer]:
     """OpenGL, and a cache of its own."""
     monkeypatch.setenv("SDFC_CACHE_DIR", str(tmp_path))
-    try:
-        made = GlRenderer()
-    except DeviceError as error:
-        import os
-
-        if os.environ.get("SDFC_REQUIRE_GL") == "1":
-            raise
-        pytest.skip(f"no OpenGL here: {error}")
-    yield made
-    made.close()
+    with contextlib.closing(GlRenderer()) as made:
+        yield made
 
 
 @pytest.mark.parametrize("path", sorted(SCENES.glob("*.sdf")), ids=lambda p: p.stem)
@@ -155,5 +148,24 @@ def test_the_explanation_tells_choice_reasons_and_what_was_left_out() -> None:
     assert "1 of 3 parts, which are proved to change nothing" in told
     assert "marching and its tolerances: every part is solved in closed form" in told
     assert "param unused: nothing that is left depends on it" in told
-    for name, tracer in TRACERS.items():
-        assert not tracer.weak or f"{name}: not chosen" in told
+    refused = ", ".join(
+        line.partition(": not chosen")[0].strip() for line in told.splitlines() if ": not chosen" in line
+    )
+    assert set(refused.split(", ")) == {name for name, tracer in TRACERS.items() if tracer.weak}
+
+
+def test_each_reason_is_told_once() -> None:
+    with sdfc.compile("scene { box(size: [1, 1, 1]) }") as program:
+        told = [line.partition(": not chosen: ")[2] for line in program.explanation().splitlines()]
+    lines = [line for line in told if line]
+    assert lines and len(set(lines)) == len(lines)
+    for line in lines:
+        whys = [reason.partition(": ")[2] for reason in line.split("; ")]
+        assert len(set(whys)) == len(whys)
+
+
+def test_a_part_too_small_for_float32_is_told() -> None:
+    small, large = "sphere(radius: 1)", "box(size: [1e8, 1e8, 1e8]).translate([1e12, 0, 0])"
+    with sdfc.compile(f"scene {{ {small} {large} }}") as far, sdfc.compile(f"scene {{ {small} }}") as near:
+        assert "warning: sphere_1 is 2 across, but in a scene of radius 5e+11 float32" in far.explanation()
+        assert "warning: box" not in far.explanation() and "warning: " not in near.explanation()

@@ -145,15 +145,11 @@ def test_samples_lie_in_different_places_of_the_pixel() -> None:
 
 @pytest.mark.gpu
 @pytest.mark.parametrize("name", ["csg5", "die", "blobs", "bracket", "gyroid", "jewel", "lamp", "column"])
-def test_the_same_picture_as_opengl(gl: object, name: str) -> None:
+def test_the_same_picture_as_opengl(renderer: GlRenderer, name: str) -> None:
     path = SCENES / f"{name}.sdf"
     scene = compile_scene(load(Source(str(path), path.read_text()), path.parent))
     taken = shot(scene, (96, 54))
-    device = GlRenderer()
-    try:
-        first = device.probe(taken, None)[0], device.radiance(taken, 0, None)
-    finally:
-        device.close()
+    first = renderer.probe(taken, None)[0], renderer.radiance(taken, 0, None)
     second = CpuRenderer().probe(taken, None)[0], CpuRenderer().radiance(taken, 0, None)
     hits = [probed[..., 3] > 0.0 for probed, _ in (first, second)]
     assert (hits[0] != hits[1]).sum() <= 2

@@ -3,26 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 
 import pytest
 from truth import Tracing
 
 from sdfc.api.renderer import GlRenderer
-from sdfc.diagnostics import DeviceError
 
 
 @pytest.fixture(scope="session")
-def tracing() -> Iterator[Tracing]:
-    """A renderer. Without OpenGL the test is skipped, unless SDFC_REQUIRE_GL=1 says that it must be there."""
-    try:
-        renderer = GlRenderer()
-    except DeviceError as error:
-        if os.environ.get("SDFC_REQUIRE_GL") == "1":
-            raise
-        pytest.skip(f"no OpenGL here: {error}")
-    yield Tracing(renderer)
-    renderer.close()
+def tracing(renderer: GlRenderer) -> Tracing:
+    return Tracing(renderer)
 
 
 @pytest.fixture(scope="session")

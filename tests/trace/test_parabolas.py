@@ -45,7 +45,7 @@ DO_NOT_PAY = ("rough and cut", "blobs", "waved and turned")
 def everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
     """Parabolas wherever there is a bound, whether they pay or not."""
 
-    def best(self: Rules, shape: Apply, region: Box, lipschitz: float, inside: bool) -> Rule:
+    def best(self: Rules, shape: Apply, region: Box, lipschitz: float, inside: bool, is_cut: bool) -> Rule:
         return Rule(self.bends.bound(shape, region) if inside else None)
 
     monkeypatch.setattr(Rules, "best", best)

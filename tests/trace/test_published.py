@@ -213,9 +213,21 @@ def test_what_liktor_loses_is_shallow(name: str, tracing: Tracing) -> None:
         assert wrong(picture, plain.truth).size > 0, "nothing is lost: the test has no teeth"
 
 
+@pytest.mark.parametrize("spec", ["sphere", *PUBLISHED])
+@pytest.mark.parametrize("name", ["csg5.sdf", "heart.sdf"])
+def test_pictures_are_those_of_proven(name: str, spec: str, tracing: Tracing) -> None:
+    """What bounds a part's distance to march it does not show as a shadow of its box, wherever the light comes from."""
+    ours, theirs = (
+        tracing.renderer.radiance(Shot(scene(name, s), View(), {}, SIZE), 0, None).astype(float)
+        for s in ("proven", spec)
+    )
+    assert (np.abs(ours - theirs).max(axis=-1) > 0.02).mean() < 0.05  # what is early at edges
+
+
 def test_points_below_the_surface_are_no_shadow(tracing: Tracing) -> None:
     """Keinert 2014, section 3.3: shadow rays clear the surface by twice what the hit is off, not by a constant."""
-    text = "scene { sphere(radius: 1) }\nlight sun { direction: [-0.2, -0.3, -1], intensity: 3 }\n"
+    text = "scene { sphere(radius: 1) sphere(radius: 0.1).translate([0, 1.1, 0]) }\n"  # alone it would cast no shadow
+    text += "light sun { direction: [-0.2, -0.3, -1], intensity: 3 }\n"
     text += "camera { eye: [0, 0, 6], target: [0, 0, 0], fov: 30deg }"
     lit = compiled_text(text).scene
     rough = compile_scene(

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field, replace
 from enum import Enum
@@ -12,20 +11,17 @@ from typing import Any, Protocol, TypeAlias, TypeVar
 
 from sdfc import pipeline
 from sdfc.api.renderer import GlRenderer, Shot
-from sdfc.api.request import AUTO, View, checked_names, checked_tracer
+from sdfc.api.request import View
 from sdfc.diagnostics import InternalError, SceneError
 from sdfc.gpu.device import Device
 from sdfc.gpu.frame import Frame
 from sdfc.gpu.program import FragmentProgram
 from sdfc.measure.bench.answers import RAYS, Size
+from sdfc.measure.way import way
 from sdfc.pipeline import Compiled, Options
 from sdfc.scene.model import Scene
 
 ENTRY = "depth"  # primary rays and nothing else: what every tracer is compared by
-
-
-EXTRAS: dict[str, dict[str, Any]] = {"prepass": {"prepass": True}, "all": {"rays": "all"}}
-_EXTRA = re.compile(r"\+(?=[a-z])")  # not that of 1e+09
 
 Planned: TypeAlias = tuple[Options, str] | SceneError  # the planner's choice and its reason, or why there is none
 Result = TypeVar("Result")
@@ -171,29 +167,16 @@ def plan(scene: Scene, renderer: GlRenderer) -> Planned:
 
 def asked(scene: Scene, spec: str, planned: Planned | None) -> tuple[Options, str]:
     """The compiler's options for a spec (`relaxed:omega=1.4`, `sphere+prepass`, `auto`), and a remark."""
-    name, *extras = _EXTRA.split(spec)
-    if name == AUTO:
-        match planned:
-            case SceneError():
-                raise planned
-            case None:
-                raise InternalError("nothing was planned")
-            case choice:
-                return choice
-    options = Options(tracer=name)
-    for extra in extras:
-        options = replace(options, **EXTRAS[extra])
-    return options, ""
-
-
-def checked(specs: Iterable[str]) -> tuple[str, ...]:
-    """The tracers that were asked for, each once, as their cells name them. Raises RequestError."""
-    found: dict[str, None] = {}
-    for spec in specs:
-        name, *extras = _EXTRA.split(spec)
-        checked_names("addition to a tracer", extras, tuple(EXTRAS))
-        found["+".join([name if name == AUTO else checked_tracer(name), *extras])] = None
-    return tuple(found)
+    options = way(spec).options
+    if options is not None:
+        return options, ""
+    match planned:
+        case SceneError():
+            raise planned
+        case None:
+            raise InternalError("nothing was planned")
+        case choice:
+            return choice
 
 
 def _entries(compiled: Compiled) -> tuple[str, ...]:

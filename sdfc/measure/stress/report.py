@@ -20,7 +20,7 @@ def told(outcomes: Sequence[Outcome], families: Sequence[Family], ways: Sequence
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
     broken = [o for o in outcomes if o.is_broken]
-    lines += ["", *(f"{o.name} [{o.way}]: {_words(o)}" for o in broken[:_MOST_TOLD])] if broken else []
+    lines += ["", *(f"{o.name} [{o.way}]: {_words(o).splitlines()[0]}" for o in broken[:_MOST_TOLD])] if broken else []
     lines += [f"and {len(broken) - _MOST_TOLD} more"] if len(broken) > _MOST_TOLD else []
     return "\n".join([*lines, "", summary(outcomes)])
 

@@ -7,13 +7,15 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from sdfc import pipeline
+from sdfc.api.choose import decide, options_of
+from sdfc.api.renderer import GlRenderer
 from sdfc.api.request import RequestError, suggestion
 from sdfc.diagnostics import InternalError, SceneError, Source
 from sdfc.measure.picture import Tracing
 from sdfc.measure.stress import FAMILIES
 from sdfc.measure.stress.record import Case, Family
 from sdfc.measure.stress.trial import Trial, tried
-from sdfc.measure.stress.way import Way
+from sdfc.measure.way import Way
 from sdfc.pipeline import Compiled
 from sdfc.reference.compare import Spread
 from sdfc.scene.model import Scene
@@ -93,9 +95,8 @@ def stressed(
 
 
 def _outcomes(tracing: Tracing, family: str, cases: list[Case], way: Way, size: Size) -> Iterator[Outcome]:
-    weak = way.tracer.weak.get(family, "")
     try:
-        compiled = _compiled(_scene(cases[0]), way)
+        compiled = _compiled(_scene(cases[0]), way, tracing.renderer)
         if isinstance(compiled, str):
             yield from (Outcome(family, case, way.name, None, illegal=compiled) for case in cases)
             return
@@ -103,6 +104,7 @@ def _outcomes(tracing: Tracing, family: str, cases: list[Case], way: Way, size: 
     except InternalError as error:
         yield from (Outcome(family, case, way.name, None, trouble=str(error)) for case in cases)
         return
+    weak = compiled.plan.tracer.weak.get(family, "")
     yield from (Outcome(family, case, way.name, trial, weak) for case, trial in zip(cases, trials, strict=True))
 
 
@@ -110,9 +112,10 @@ def _scene(case: Case) -> Scene:
     return pipeline.load(Source(f"{case.name}.sdf", case.text), None)
 
 
-def _compiled(scene: Scene, way: Way) -> Compiled | str:
+def _compiled(scene: Scene, way: Way, renderer: GlRenderer) -> Compiled | str:
     """Compiled, or why the tracer may not trace this."""
     try:
-        return pipeline.compile_scene(scene, way.options)
+        options = way.options or options_of(decide(scene, renderer, pilot=False).chosen)
+        return pipeline.compile_scene(scene, options)
     except SceneError as error:
         return "; ".join(d.message for d in error.diagnostics)

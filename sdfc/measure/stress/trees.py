@@ -55,7 +55,23 @@ BLEND = (
     "intersection(blend: 0.15) { box(size: [1, 0.8, 0.8]) sphere(radius: 0.55) }",
     "difference(blend: 0.1) { sphere(radius: 0.6) cylinder(radius: 0.25, height: 2) }",
 )
-KINDS = {"closed": CLOSED, "two intervals": TWO_INTERVALS, "tangent": TANGENT, "ball": BALL, "blend": BLEND}
+# Fields whose values are no distances. Their slopes are bounded everywhere, so that they may be blended and cut away;
+# what is flat at its surface, and cut or blended, is in the family `flat`.
+FLAT = ("thousandths()", "levelled()")
+_FIELDS = """\
+field thousandths() = 0.001 * (length(p * [1, 1.5, 2]) - 0.6) bounds -[0.61, 0.41, 0.31] .. [0.61, 0.41, 0.31]
+field levelled() = d / (1 + 4 * abs(d)) where d = length(p) - 0.5
+    lipschitz 1 bounds -[r, r, r] .. [r, r, r] where r = 0.5 + level / (1 - 4 * level)
+"""
+KINDS = {
+    "closed": CLOSED,
+    "two intervals": TWO_INTERVALS,
+    "tangent": TANGENT,
+    "ball": BALL,
+    "blend": BLEND,
+    "flat": FLAT,
+}
+KERNELS = ("quadratic", "cubic", "circular", "exponential", "root", "round")
 
 VIEWS: tuple[View, ...] = (
     look((2.3, 1.9, 2.9)),
@@ -78,6 +94,12 @@ def table(count: int, seed: int) -> str:
     )
 
 
+def whole(parts: Sequence[str]) -> str:
+    """The scene of these parts, with the fields that they need."""
+    shown = "scene { " + " ".join(parts) + " }"
+    return _FIELDS + shown if any(field in shown for field in FLAT) else shown
+
+
 class Grower:
     """Draws scenes. `pick` chooses one of several: all that is random about them."""
 
@@ -95,14 +117,16 @@ class Grower:
             parts.append(table(self.pick((49, 64, 70)), self.pick(range(6))))
         if self.pick(range(6)) == 0:
             parts.append("plane(normal: [0, 1, 0.1], offset: -0.9)")
-        return "scene { " + " ".join(parts) + " }"
+        return whole(parts)
 
     def tree(self, depth: int = _DEPTH) -> str:
         """A tree of hard unions, intersections, differences and complements."""
         if depth == 0 or self.pick(range(4)) == 0:
-            return self.placed(f"({self.pick(KINDS[self.pick(tuple(KINDS))])})")
+            return self.placed(f"({self._leaf()})")
         parts = [self.tree(depth - 1) for _ in range(self.pick((2, 3)))]
-        match self.pick(("union", "union", "difference", "difference", "intersection", "complement")):
+        match self.pick(("union", "union", "difference", "difference", "intersection", "complement", "blend")):
+            case "blend":
+                return self.placed(self.blended())
             case "union":
                 return self.placed(f"({' | '.join(parts)})")
             case "difference":
@@ -111,6 +135,16 @@ class Grower:
                 return f"({' & '.join(parts)})"
             case _:
                 return f"(box(size: [1.4, 1.4, 1.4]) & ~({' & '.join(parts)}))"
+
+    def blended(self) -> str:
+        """A smooth operation on two or three parts, of any kind."""
+        operation = self.pick(("union", "union", "intersection", "difference"))
+        kernel, width = self.pick(KERNELS), self.pick((0.02, 0.1, 0.3))
+        parts = [self.placed(f"({self._leaf()})") for _ in range(self.pick((2, 2, 3)))]
+        return f"{operation}(blend: {width}, kernel: {kernel}) {{ {' '.join(parts)} }}"
+
+    def _leaf(self) -> str:
+        return self.pick(KINDS[self.pick(tuple(KINDS))])
 
     def _number(self) -> float:
         return self.pick(_NUMBERS)

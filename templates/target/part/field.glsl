@@ -43,6 +43,8 @@ struct Properties {
 };
 
 Properties properties(vec3 p) {
-    Nearest s = nearest({{ own_p }});
-    return Properties({{ nearest_values }});
+{% if not is_whole %}
+    p = {{ own_p }};
+{% endif %}
+{{ nearest.properties }}
 }

@@ -1,0 +1,286 @@
+"""While a shader is compiled elsewhere, what was there goes on; then the newest is shown, and nothing that is older."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+
+import pytest
+from author import BALLS, SIZE
+from visitor import PATIENCE, Visitor, visitors
+
+from sdfc.diagnostics import SceneError
+from sdfc.live.pages import Pages
+from sdfc.live.saves import Bell
+from sdfc.live.session import Session
+from sdfc.live.snapshot import take
+from sdfc.live.update import Speed, Update
+from sdfc.live.worker import Job, Outcome, Worker
+
+pytestmark = [pytest.mark.gpu, pytest.mark.usefixtures("opengl")]
+
+OTHER = BALLS.replace("many = 3", "many = 2")
+THIRD = BALLS.replace("many = 3", "many = 4")
+
+
+class SlowWorker:
+    """Takes jobs, and is done with them when a test says so."""
+
+    def __init__(self) -> None:
+        self.helps = True
+        self.jobs: list[tuple[Job, Future[Outcome]]] = []
+        self.stops = 0
+
+    def compile(self, job: Job) -> Future[Outcome]:
+        future: Future[Outcome] = Future()
+        self.jobs.append((job, future))
+        return future
+
+    def stop(self) -> None:
+        self.stops += 1
+
+    def finishes(self, outcome: Outcome = Outcome.KEPT) -> None:
+        """All that it was not told to leave."""
+        for _, future in self.jobs:
+            if not future.done():
+                future.set_result(outcome)
+
+
+class Desk:
+    """A session with a worker, for one who looks at the file."""
+
+    def __init__(self, folder: Path, pages: Pages | None = None, has_file: bool = True) -> None:
+        self.scene, self.file = folder / "s.sdf", folder / "o.npy"
+        self.worker, self.bell = SlowWorker(), Bell()
+        output = self.file if has_file else None
+        self.session = Session(output, SIZE, "auto", "gl", print, pages, cast("Worker", self.worker), self.bell)
+
+    def begins(self, text: str) -> Update | None:
+        self.scene.write_text(text)
+        return self.session.begin(take(self.scene))
+
+    def picture(self) -> bytes:
+        return self.file.read_bytes()
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Iterator[Desk]:
+    made = Desk(tmp_path)
+    yield made
+    made.session.close()
+
+
+@pytest.fixture
+def picture_of(tmp_path: Path) -> Iterator[Callable[[str], bytes]]:
+    """What a session without a worker draws."""
+    folder = tmp_path / "fresh"
+    folder.mkdir()
+    desk = Desk(folder)
+
+    def drawn(text: str) -> bytes:
+        desk.scene.write_text(text)
+        desk.session.distrust()
+        desk.session.update(take(desk.scene))
+        return desk.picture()
+
+    yield drawn
+    desk.session.close()
+
+
+def test_the_picture_stays_until_the_shader_is_there(desk: Desk, picture_of: Callable[[str], bytes]) -> None:
+    first = desk.begins(BALLS)
+    assert first is not None and first.speed is Speed.NEW_SHADER, "there was nothing to stay"
+    before = desk.picture()
+    assert desk.begins(OTHER) is None
+    assert desk.session.go_on() is None and desk.picture() == before
+    desk.worker.finishes()
+    update = desk.session.go_on()
+    assert update is not None and update.speed is Speed.NEW_SHADER and "compiling ahead" in update.times
+    assert desk.picture() == picture_of(OTHER)
+    assert desk.session.go_on() is None, "once"
+
+
+def test_who_waits_is_woken(desk: Desk) -> None:
+    desk.begins(BALLS)
+    desk.begins(OTHER)
+    assert not desk.bell.wait(0.0)
+    desk.worker.finishes()
+    assert desk.bell.wait(0.0)
+
+
+@pytest.mark.parametrize("outcome", [Outcome.NOT_KEPT, Outcome.REFUSED, Outcome.LOST])
+def test_whatever_becomes_of_the_worker_the_picture_comes(
+    desk: Desk, picture_of: Callable[[str], bytes], outcome: Outcome
+) -> None:
+    desk.begins(BALLS)
+    desk.begins(OTHER)
+    desk.worker.helps = False
+    desk.worker.finishes(outcome)
+    assert desk.session.go_on() is not None
+    assert desk.picture() == picture_of(OTHER)
+    assert desk.begins(THIRD) is not None, "and the next is not asked for"
+    assert len(desk.worker.jobs) == 1
+
+
+def test_the_newest_wins(desk: Desk, picture_of: Callable[[str], bytes]) -> None:
+    desk.begins(BALLS)
+    desk.begins(OTHER)
+    desk.begins(THIRD)
+    (_, first), (_, second) = desk.worker.jobs
+    assert first.cancelled() and not second.done()
+    second.set_result(Outcome.KEPT)
+    assert desk.session.go_on() is not None
+    assert desk.picture() == picture_of(THIRD)
+
+
+def test_numbers_are_changed_by_the_old_shader_meanwhile(desk: Desk, picture_of: Callable[[str], bytes]) -> None:
+    """Whoever takes an edit of the structure back does not wait for its shader."""
+    desk.begins(BALLS)
+    desk.begins(OTHER)
+    text = BALLS.replace("size = 0.5", "size = 0.8")
+    update = desk.begins(text)
+    assert update is not None and update.speed is Speed.NUMBERS
+    desk.worker.finishes()
+    assert desk.session.go_on() is None
+    assert desk.picture() == picture_of(text)
+
+
+def test_numbers_are_changed_of_what_waits(desk: Desk, picture_of: Callable[[str], bytes]) -> None:
+    """It is compiled once, and shown as it is in the end."""
+    desk.begins(BALLS)
+    desk.begins(OTHER)
+    for size in ("0.6", "0.7", "0.8"):
+        assert desk.begins(OTHER.replace("size = 0.5", f"size = {size}")) is None
+    assert desk.begins("// said\n" + OTHER.replace("size = 0.5", "size = 0.8")) is None
+    assert len(desk.worker.jobs) == 1
+    desk.worker.finishes()
+    update = desk.session.go_on()
+    assert update is not None and update.speed is Speed.NEW_SHADER
+    assert desk.picture() == picture_of(OTHER.replace("size = 0.5", "size = 0.8"))
+    again = desk.begins(OTHER.replace("size = 0.5", "size = 0.9"))
+    assert again is not None and again.speed is Speed.NUMBERS
+
+
+def test_what_is_broken_meanwhile_is_told_and_the_rest_goes_on(desk: Desk, picture_of: Callable[[str], bytes]) -> None:
+    desk.begins(BALLS)
+    desk.begins(OTHER)
+    with pytest.raises(SceneError):
+        desk.begins(OTHER + "}")
+    desk.worker.finishes()
+    assert desk.session.go_on() is not None
+    assert desk.picture() == picture_of(OTHER)
+
+
+def test_what_may_not_be_what_was_read_is_shown_and_not_built_upon(desk: Desk) -> None:
+    desk.begins(BALLS)
+    desk.begins(OTHER)
+    desk.session.distrust()
+    desk.worker.finishes()
+    assert desk.session.go_on() is not None
+    text = OTHER.replace("size = 0.5", "size = 0.8")
+    update = desk.begins(text)
+    assert update is not None and update.speed is Speed.SAME_SHADER, "compiled again, by sdfc"
+
+
+@dataclass
+class Served:
+    """A desk with pages, and one who looks at them."""
+
+    desk: Desk
+    viewer: Visitor
+    asked: threading.Semaphore
+
+    def asks(self, request: int, camera: object) -> None:
+        self.viewer.asks(request, camera=camera, size=list(SIZE))
+        assert self.asked.acquire(timeout=PATIENCE)
+
+
+@pytest.fixture
+def serving(tmp_path: Path) -> Iterator[Callable[[bool], Served]]:
+    """Makes a desk with pages; whether it has a file as well."""
+    with ExitStack() as stack:
+
+        def made(has_file: bool) -> Served:
+            asked = threading.Semaphore(0)
+            pages = Pages(0, asked.release)
+            stack.callback(pages.close)
+            desk = Desk(tmp_path, pages, has_file)
+            stack.callback(desk.session.close)
+            visitor = stack.enter_context(visitors(int(pages.address.rstrip("/").rsplit(":", 1)[1])))
+            assert (desk.begins(BALLS) is None) == has_file, "pages do not wait for the first picture"
+            return Served(desk, visitor(), asked)
+
+        yield made
+
+
+def test_a_page_is_drawn_for_when_the_shader_is_there(serving: Callable[[bool], Served]) -> None:
+    served = serving(True)
+    desk, viewer = served.desk, served.viewer
+    first = viewer.hears("scene")
+    served.asks(1, first["camera"])
+    assert not desk.session.answer(), "its shader is compiled"
+    desk.worker.finishes()
+    desk.session.go_on()
+    assert desk.session.answer()
+    before = viewer.picture(1)
+    desk.begins(OTHER)
+    assert viewer.hears("scene")["id"] == first["id"] + 1, "the page compiles for itself"
+    served.asks(2, first["camera"])
+    assert not desk.session.answer()
+    desk.worker.finishes()
+    assert desk.session.answer(), "before the file is written, or after it"
+    assert viewer.picture(2) != before
+    assert desk.session.go_on() is not None
+
+
+def test_what_a_page_waits_for_is_not_given_up_for_numbers(serving: Callable[[bool], Served]) -> None:
+    served = serving(False)
+    desk, viewer = served.desk, served.viewer
+    camera = viewer.hears("scene")["camera"]
+    assert not desk.worker.jobs, "nobody asked for a picture"
+    served.asks(1, camera)
+    assert not desk.session.answer()
+    for size in ("0.6", "0.7"):
+        update = desk.begins(BALLS.replace("size = 0.5", f"size = {size}"))
+        assert update is not None and update.speed is Speed.NUMBERS
+        viewer.hears("values")
+        assert not desk.session.answer()
+    ((_, future),) = desk.worker.jobs
+    future.set_result(Outcome.KEPT)
+    assert desk.session.answer()
+    last = viewer.picture(1)
+    desk.begins(BALLS.replace("size = 0.5", "size = 0.6"))
+    viewer.hears("values")
+    served.asks(2, camera)
+    assert desk.session.answer()
+    assert viewer.picture(2) != last, "it had the newest numbers"
+    desk.begins(OTHER)
+    viewer.hears("scene")
+    served.asks(3, camera)
+    assert not desk.session.answer()
+    desk.begins(THIRD)
+    viewer.hears("scene")
+    assert desk.worker.jobs[1][1].cancelled(), "a scene that is gone is given up"
+    assert not desk.session.answer()
+    desk.worker.finishes()
+    assert desk.session.answer()
+    viewer.picture(3)
+
+
+def test_the_real_worker_makes_the_same_picture(tmp_path: Path, picture_of: Callable[[str], bytes]) -> None:
+    with Worker(print) as worker:
+        desk = Desk(tmp_path)
+        session = Session(desk.file, SIZE, "auto", "gl", print, None, worker, desk.bell)
+        for text in (BALLS, OTHER, THIRD):
+            desk.scene.write_text(text)
+            update = session.begin(take(desk.scene))
+            while update is None:
+                desk.bell.wait(30.0)
+                update = session.go_on()
+            assert desk.picture() == picture_of(text)
+        session.close()

@@ -1,0 +1,151 @@
+"""What the page does when the server, the driver or the connection does what they seldom do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import closing
+from typing import Any
+
+import pytest
+from devtools import Browser, Open
+from hands import COUNTED, SIZE, another, picture, share_of_others
+from servers import Actor, Watch
+
+pytestmark = pytest.mark.gpu
+
+EDITS = 200
+LOSING = """new Promise((done) => {
+  const canvas = document.querySelector("#picture");
+  globalThis.loss = canvas.getContext("webgl2").getExtension("WEBGL_lose_context");
+  canvas.addEventListener("webglcontextlost", () => done(true));
+  loss.loseContext();
+})"""
+
+
+@pytest.fixture
+def actor(watch: Watch) -> Iterator[Actor]:
+    with closing(Actor(watch.told())) as opened:
+        yield opened
+
+
+def changed(scene: dict[str, Any], number: int) -> dict[str, Any]:
+    """The scene, with other shaders."""
+    shaders = {name: f"{text}\nconst float CHANGED = {number}.0;\n" for name, text in scene["shaders"].items()}
+    return {**scene, "id": number, "shaders": shaders}
+
+
+def test_many_edits_leave_nothing_behind(actor: Actor, page: Open) -> None:
+    tab = page(actor.url, size=SIZE, prepare=COUNTED)
+    before = picture(tab)
+    alive, nodes = tab.run("counted.alive"), tab.run("document.querySelectorAll('*').length")
+    for number in range(2, EDITS + 2):
+        actor.say(changed(actor.scene, number))
+        actor.say({"type": "values", "id": number, "values": {"set_size": [0.3 + 0.001 * number]}})
+        if number % 20 == 0:
+            tab.rest()
+    actor.say(actor.scene)
+    tab.until("!document.querySelector('#view').matches('[aria-busy=true]')")
+    assert share_of_others(another(tab, before * 0), before) == 0
+    assert tab.run("counted.programs") > 15, "some of them were compiled"
+    assert tab.run("counted.alive") == alive
+    assert tab.run("document.querySelectorAll('*').length") == nodes
+
+
+def test_a_shader_that_the_driver_refuses_is_told(actor: Actor, page: Open) -> None:
+    tab = page(actor.url, size=SIZE)
+    before = picture(tab)
+    shaders = {**actor.scene["shaders"], "picture": "#version 300 es\nvoid main() {"}
+    actor.say({**actor.scene, "id": 2, "shaders": shaders})
+    tab.until("!document.querySelector('#problem').hidden")
+    assert "ERROR" in tab.text("#problem pre")
+    assert share_of_others(picture(tab)[:80], before[:80]) == 0, "the last good picture stays"
+    actor.say({**actor.scene, "id": 3})
+    tab.until("document.querySelector('#problem').hidden")
+
+
+def test_a_lost_context_is_restored(actor: Actor, page: Open) -> None:
+    tab = page(actor.url, size=SIZE)
+    before = picture(tab)
+    tab.run(LOSING)
+    tab.run("loss.restoreContext()")
+    assert share_of_others(another(tab, before * 0), before) == 0
+
+
+def test_it_connects_again_by_itself(actor: Actor, page: Open) -> None:
+    tab = page(actor.url, size=SIZE)
+    before = picture(tab)
+    assert tab.text("#connection .words") == "Live"
+    actor.close()
+    tab.until("document.querySelector('#connection .words').textContent.startsWith('Connection lost')")
+    assert share_of_others(picture(tab), before) == 0, "what there is stays, and can be turned"
+    tab.key("ArrowLeft")
+    turned = another(tab, before)
+    with closing(Actor(actor.scene, actor.port)):
+        tab.until("document.querySelector('#connection .words').textContent === 'Live'")
+        assert share_of_others(picture(tab), turned) == 0, "and the camera stays where it is"
+    refused = [c for c in tab.complaints() if "WebSocket" not in c]  # the browser itself tells of those
+    assert refused == []
+
+
+def test_it_asks_for_pictures_that_the_server_can_draw(actor: Actor, page: Open) -> None:
+    tab = page(actor.url, size=(2600, 400))
+    tab.key("6")
+    tab.until("document.querySelector('#served-state') !== null")
+    for _ in range(3):
+        tab.key("ArrowLeft")
+    tab.run("new Promise(done => setTimeout(done, 400))")  # longer than a camera must rest
+    assert len(actor.heard) == 1, "once, when the camera rests"
+    (asked,) = actor.heard
+    width, height = asked["size"]
+    assert max(width, height) == 1920 and abs(width / height - 2312 / 400) < 0.02
+    assert asked["type"] == "draw" and set(asked["params"]) == {"size", "turn", "paint"}
+    actor.say({"type": "refused", "request": asked["request"], "text": "not today"})
+    tab.until("document.querySelector('#served-state').textContent === 'not today'")
+
+
+def test_a_scene_that_is_wrong_from_the_start(actor: Actor, browser: Browser) -> None:
+    scene = actor.scene
+    actor.scene = {"type": "errors", "text": "s.sdf:1:1: error: no", "diagnostics": [{"message": "no"}]}
+    tab = browser.open(size=SIZE)
+    tab.go(actor.url)
+    tab.until("document.querySelector('#problem')?.hidden === false")
+    assert tab.run("!document.querySelector('#waiting').hidden")
+    for key in ("ArrowLeft", "+", "s", "c", "b", "4", "Home", "1"):
+        tab.key(key)
+    actor.say(scene)
+    tab.until("document.querySelector('#waiting').hidden && document.querySelector('#problem').hidden")
+    assert picture(tab).std() > 20
+    assert tab.complaints() == []
+    tab.close()
+
+
+FAKE = """import("/pace.js").then(({ Pace }) => {
+  const gl = {
+    fenceSync: () => ({}), flush: () => {}, deleteSync: () => {}, isContextLost: () => false, getSyncParameter: () => 1,
+    SIGNALED: 1,
+  };
+  const real = performance.now;
+  let now = 0;
+  performance.now = () => now;
+  const pace = new Pace();
+  const of = (milliseconds) => {
+    for (let i = 0; i < 3; i++) { pace.drew(gl, 1e6); now += milliseconds; pace.isBusy(gl); }
+    const size = [1000, 1000];
+    return [pace.estimate(1e6), pace.scale(1e6), pace.rows(size), pace.samples(1e6, 8)];
+  };
+  const found = [1, 20, 100, 400, 1e4].map(of);
+  performance.now = real;
+  return found;
+})"""
+
+
+def test_a_slow_device_draws_coarser_and_in_smaller_pieces(actor: Actor, page: Open) -> None:
+    tab = page(actor.url, size=SIZE)
+    measured = tab.run(FAKE)
+    for estimate, scale, rows, samples in measured:
+        assert scale == 1 or scale == 0.25 or abs(estimate * scale * scale - 30) < 1, "30 ms while it moves"
+        assert rows in (1000, 8) or abs(estimate * rows / 1000 - 60) <= estimate / 1000, "60 ms a piece at rest"
+        assert 1 <= samples <= 8
+    assert [m[0] for m in measured] == [1, 20, 100, 400, 1e4]
+    assert measured[0][1:] == [1, 1000, 8]
+    assert measured[-1][1:] == [0.25, 8, 1]
