@@ -156,10 +156,12 @@ def test_the_cpu_has_one_tracer_and_says_so() -> None:
 
 
 def test_params_with_underscores_in_a_row_have_uniforms_that_glsl_allows(tmp_path: Path) -> None:
-    text = "param a__b = 0.5 in 0.2..0.8\nparam _r = 0.3 in 0.2..0.8\nscene { sphere(radius: a__b) box(size: [_r, 1, 2]) }"
+    text = (
+        "param a__b = 0.5 in 0.2..0.8\nparam _r = 0.3 in 0.2..0.8\nscene { sphere(radius: a__b) box(size: [_r, 1, 2]) }"
+    )
     with sdfc.compile(text) as program:
         glsl = program.glsl("glsl450")
         assert "set_a_b;" in glsl and "set_r;" in glsl and "__" not in glsl
         assert np.isfinite(program.render(size=SIZE, backend="cpu", params={"a__b": 0.7}).colour).all()
     with pytest.raises(sdfc.SceneError, match="params 'a__b' and 'a_b' would be one in GLSL"):
-        sdfc.compile("param a__b = 0.5 in 0..1\nparam a_b = 0.5 in 0..1\nscene { sphere(radius: a__b + a_b) }")
+        sdfc.compile("param a__b = 0.5 in 0.1..1\nparam a_b = 0.5 in 0.1..1\nscene { sphere(radius: a__b + a_b) }")
