@@ -24,7 +24,11 @@ export class Bounds {
     this.#canvas = canvas;
   }
 
-  /** @param {?Scene} scene @param {?Camera} camera @param {[number, number]} size in pixels of the device */
+  /**
+   * @param {?Scene} scene
+   * @param {?Camera} camera
+   * @param {[number, number]} size in pixels of the device
+   */
   draw(scene, camera, size) {
     this.#canvas.hidden = !this.isShown;
     if (!this.isShown || !scene || !camera) return;
@@ -55,7 +59,12 @@ class Pen {
     this.near = near;
   }
 
-  /** @param {Box} box @param {number} width @param {string} color @param {string} [hem] around the lines */
+  /**
+   * @param {Box} box
+   * @param {number} width
+   * @param {string} color
+   * @param {string} [hem] around the lines
+   */
   box(box, width, color, hem = "transparent") {
     const corners = cornersOf(box).map(this.project);
     this.context.beginPath();
@@ -64,13 +73,13 @@ class Pen {
     this.#stroke(width, color);
   }
 
-  /** At the middle of its top. @param {Box} box @param {number} ratio */
+  /**
+   * At the middle of its top.
+   * @param {Box} box
+   * @param {number} ratio
+   */
   name(box, ratio) {
-    const at = this.project([
-      (box.low[0] + box.high[0]) / 2,
-      box.high[1],
-      (box.low[2] + box.high[2]) / 2,
-    ]);
+    const at = this.project([(box.low[0] + box.high[0]) / 2, box.high[1], (box.low[2] + box.high[2]) / 2]);
     if (!box.name || at[2] < this.near) return;
     const [x, y] = this.#place(at);
     this.context.font = `${12 * ratio}px system-ui, sans-serif`;
@@ -83,27 +92,40 @@ class Pen {
     this.context.fillText(box.name, x, y - 4 * ratio);
   }
 
-  /** @param {number} width @param {string} color */
+  /**
+   * @param {number} width
+   * @param {string} color
+   */
   #stroke(width, color) {
     this.context.lineWidth = width;
     this.context.strokeStyle = color;
     this.context.stroke();
   }
 
-  /** What of it lies in front of the eye. @param {[number, number, number]} from @param {[number, number, number]} to */
+  /**
+   * What of it lies in front of the eye.
+   * @param {[number, number, number]} from
+   * @param {[number, number, number]} to
+   */
   #line(from, to) {
     if (from[2] < this.near && to[2] < this.near) return;
     this.context.moveTo(...this.#place(cut(from, to, this.near)));
     this.context.lineTo(...this.#place(cut(to, from, this.near)));
   }
 
-  /** @param {[number, number, number]} at @returns {[number, number]} */
+  /**
+   * @param {[number, number, number]} at
+   * @returns {[number, number]}
+   */
   #place([x, y, w]) {
     return [0.5 * this.size[0] * (1 + x / w), 0.5 * this.size[1] * (1 - y / w)];
   }
 }
 
-/** @param {Box} box @returns {Vector[]} */
+/**
+ * @param {Box} box
+ * @returns {Vector[]}
+ */
 const cornersOf = ({ low, high }) =>
   [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => [
     corner & 1 ? high[0] : low[0],
@@ -111,8 +133,13 @@ const cornersOf = ({ low, high }) =>
     corner & 4 ? high[2] : low[2],
   ]);
 
-/** `from`, or the point between it and `to` where w is `near`. @param {[number, number, number]} from
- * @param {[number, number, number]} to @param {number} near @returns {[number, number, number]} */
+/**
+ * `from`, or the point between it and `to` where w is `near`.
+ * @param {[number, number, number]} from
+ * @param {[number, number, number]} to
+ * @param {number} near
+ * @returns {[number, number, number]}
+ */
 function cut(from, to, near) {
   if (from[2] >= near) return from;
   const share = (near - from[2]) / (to[2] - from[2]);

@@ -11,7 +11,11 @@ const STEEPEST = Math.PI / 2 - 1e-3; // a camera that is orbited stays this side
 const NEAREST = 1e-4; // between eye and target, of the scene's radius
 const FARTHEST = 1e4;
 
-/** Unit vectors to the right, upward and ahead. @param {Camera} camera @returns {{right: Vector, above: Vector, ahead: Vector}} */
+/**
+ * Unit vectors to the right, upward and ahead.
+ * @param {Camera} camera
+ * @returns {{right: Vector, above: Vector, ahead: Vector}}
+ */
 export function axesOf(camera) {
   const ahead = unit(minus(camera.target, camera.eye));
   let right = cross(ahead, camera.up);
@@ -22,7 +26,10 @@ export function axesOf(camera) {
   return { right, above: cross(right, ahead), ahead };
 }
 
-/** Half the height of what is seen, at distance 1, or anywhere without perspective. @param {Camera} camera */
+/**
+ * Half the height of what is seen, at distance 1, or anywhere without perspective.
+ * @param {Camera} camera
+ */
 const halfOf = ({ fov, height }) => (height === null ? Math.tan(0.5 * Number(fov)) : 0.5 * height);
 
 /**
@@ -48,8 +55,13 @@ export function uniformsOf(camera, own, size, jitter = [0, 0]) {
   };
 }
 
-/** Around the target. @param {Camera} camera @param {number} aside in radians, to the right @param {number} up in radians
- * @returns {Camera} */
+/**
+ * Around the target.
+ * @param {Camera} camera
+ * @param {number} aside in radians, to the right
+ * @param {number} up in radians
+ * @returns {Camera}
+ */
 export function orbited(camera, aside, up) {
   const vertical = unit(camera.up);
   const offset = minus(camera.eye, camera.target);
@@ -61,8 +73,13 @@ export function orbited(camera, aside, up) {
   return { ...camera, eye: plus(camera.target, times(distance, toward)) };
 }
 
-/** Eye and target together. @param {Camera} camera @param {number} right in heights of the picture @param {number} up
- * @returns {Camera} */
+/**
+ * Eye and target together.
+ * @param {Camera} camera
+ * @param {number} right in heights of the picture
+ * @param {number} up
+ * @returns {Camera}
+ */
 export function panned(camera, right, up) {
   const axes = axesOf(camera);
   const distance = camera.height === null ? length(minus(camera.eye, camera.target)) : 1;
@@ -71,10 +88,16 @@ export function panned(camera, right, up) {
   return { ...camera, eye: plus(camera.eye, moved), target: plus(camera.target, moved) };
 }
 
-/** Nearer (a factor below 1) or farther. @param {Camera} camera @param {number} factor
- * @param {number} radius of the scene @returns {Camera} */
+/**
+ * Nearer (a factor below 1) or farther.
+ * @param {Camera} camera
+ * @param {number} factor
+ * @param {number} radius of the scene
+ * @returns {Camera}
+ */
 export function zoomed(camera, factor, radius) {
-  const bounded = (/** @type {number} */ size) => Math.min(FARTHEST * radius, Math.max(NEAREST * radius, size * factor));
+  const bounded = (/** @type {number} */ size) =>
+    Math.min(FARTHEST * radius, Math.max(NEAREST * radius, size * factor));
   if (camera.height !== null) return { ...camera, height: bounded(camera.height) };
   const offset = minus(camera.eye, camera.target);
   const distance = length(offset);
@@ -97,7 +120,10 @@ export function projection(camera, aspect) {
   };
 }
 
-/** As a scene has it. @param {Camera} camera */
+/**
+ * As a scene has it.
+ * @param {Camera} camera
+ */
 export function textOf(camera) {
   const decimals = 5 - Math.floor(Math.log10(length(minus(camera.eye, camera.target))));
   const number = (/** @type {number} */ x) =>

@@ -27,8 +27,13 @@ export class Film {
     gl.blendFunc(gl.ONE, gl.ONE);
   }
 
-  /** Draw on some rows. @param {[number, number]} size of the whole
-   * @param {{first: number, count: number}} rows @param {boolean} isFirst whether to begin anew @param {() => void} draw */
+  /**
+   * Draw on some rows.
+   * @param {[number, number]} size of the whole
+   * @param {{first: number, count: number}} rows
+   * @param {boolean} isFirst whether to begin anew
+   * @param {() => void} draw
+   */
   expose(size, rows, isFirst, draw) {
     const gl = this.#gl;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.#target);
@@ -43,7 +48,10 @@ export class Film {
     gl.disable(gl.SCISSOR_TEST);
   }
 
-  /** Show it on the canvas. @param {number} samples that were added up */
+  /**
+   * Show it on the canvas.
+   * @param {number} samples that were added up
+   */
   show(samples) {
     const gl = this.#gl;
     const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];

@@ -4,7 +4,10 @@
 
 const MOVES = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "Home"];
 
-/** Call what belongs to a key, but for those that what has the focus takes itself. @param {Shortcut[]} shortcuts */
+/**
+ * Call what belongs to a key, but for those that what has the focus takes itself.
+ * @param {Shortcut[]} shortcuts
+ */
 export function listen(shortcuts) {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
@@ -19,12 +22,17 @@ export function listen(shortcuts) {
   });
 }
 
-/** Rows for the help. @param {Shortcut[]} shortcuts @param {HTMLTableSectionElement} table */
+/**
+ * Rows for the help.
+ * @param {Shortcut[]} shortcuts
+ * @param {HTMLTableSectionElement} table
+ */
 export function describe(shortcuts, table) {
   for (const { shown, words } of shortcuts) {
     const row = table.insertRow();
     const keys = row.insertCell();
-    for (const key of shown.split(" ")) keys.append(Object.assign(document.createElement("kbd"), { textContent: key }), " ");
+    for (const key of shown.split(" "))
+      keys.append(Object.assign(document.createElement("kbd"), { textContent: key }), " ");
     row.insertCell().textContent = words;
   }
 }

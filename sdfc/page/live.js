@@ -19,7 +19,10 @@ export class Live {
     this.#connect(url);
   }
 
-  /** Whether it could be sent. @param {Message} message */
+  /**
+   * Whether it could be sent.
+   * @param {Message} message
+   */
   send(message) {
     if (this.#socket?.readyState !== WebSocket.OPEN) return false;
     this.#socket.send(JSON.stringify(message));

@@ -16,14 +16,21 @@ export class Pace {
     this.#measured = [];
   }
 
-  /** Something was drawn. @param {WebGL2RenderingContext} gl @param {number} pixels */
+  /**
+   * Something was drawn.
+   * @param {WebGL2RenderingContext} gl
+   * @param {number} pixels
+   */
   drew(gl, pixels) {
     const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
     if (sync) this.#awaited = { sync, pixels, since: performance.now() };
   }
 
-  /** Whether the GPU still draws what it was given last. @param {WebGL2RenderingContext} gl */
+  /**
+   * Whether the GPU still draws what it was given last.
+   * @param {WebGL2RenderingContext} gl
+   */
   isBusy(gl) {
     const awaited = this.#awaited;
     if (!awaited) return false;
@@ -35,23 +42,36 @@ export class Pace {
     return false;
   }
 
-  /** Milliseconds for a picture, if nothing comes between. @param {number} pixels */
+  /**
+   * Milliseconds for a picture, if nothing comes between.
+   * @param {number} pixels
+   */
   estimate(pixels) {
     return (this.#measured.length ? Math.min(...this.#measured) : GUESS) * pixels;
   }
 
-  /** The share of each side to draw while the camera moves. @param {number} pixels of the picture */
+  /**
+   * The share of each side to draw while the camera moves.
+   * @param {number} pixels of the picture
+   */
   scale(pixels) {
     const share = Math.sqrt(SMOOTH / this.estimate(pixels));
     return share > 0.8 ? 1 : Math.max(COARSEST, share);
   }
 
-  /** How many samples to spread over each pixel of a picture at rest. @param {number} pixels @param {number} most */
+  /**
+   * How many samples to spread over each pixel of a picture at rest.
+   * @param {number} pixels
+   * @param {number} most
+   */
   samples(pixels, most) {
     return Math.min(most, Math.max(1, Math.floor(REFINING / this.estimate(pixels))));
   }
 
-  /** How many rows of a picture at rest to draw at a time. @param {[number, number]} size */
+  /**
+   * How many rows of a picture at rest to draw at a time.
+   * @param {[number, number]} size
+   */
   rows([width, height]) {
     return Math.min(height, Math.max(8, Math.floor(POLITE / this.estimate(width))));
   }

@@ -109,12 +109,14 @@ class Page {
     explain(element("legend"), this.#view, this.#scene);
     this.#painter.show(this.#scene);
     // who moved the camera stays there, until the text says something else
-    const isAtHome = !this.#camera || !before || !alike(before.told.camera, told.camera);
-    if (isAtHome) this.#goTo(told.camera);
-    else this.#changed(false);
+    if (!before || !alike(before.told.camera, told.camera)) this.#goTo(told.camera);
+    else this.#renew();
   }
 
-  /** To a camera that the text says. @param {Camera} camera */
+  /**
+   * To a camera that the text says.
+   * @param {Camera} camera
+   */
   #goTo(camera) {
     if (this.#scene) this.#scene.told.camera = camera;
     this.#camera = camera;
@@ -137,10 +139,19 @@ class Page {
     if (this.#scene) this.#goTo(this.#scene.told.camera);
   }
 
-  /** Draw what there is now. @param {boolean} isMoving */
+  /**
+   * Draw what there is now.
+   * @param {boolean} isMoving
+   */
   #changed(isMoving) {
     if (!this.#scene || !this.#camera) return;
     this.#painter.look(this.#camera, isMoving);
+    this.#renew();
+  }
+
+  /** What lies over the picture. */
+  #renew() {
+    if (!this.#scene || !this.#camera) return;
     this.#bounds.draw(this.#scene, this.#camera, this.#size);
     this.#served.want({ camera: this.#camera, params: this.#scene.params, size: this.#size });
   }
@@ -195,7 +206,10 @@ class Page {
     if (this.#painter.resize(this.#size)) this.#changed(false);
   }
 
-  /** Of the picture, in pixels of the device. @returns {[number, number]} */
+  /**
+   * Of the picture, in pixels of the device.
+   * @returns {[number, number]}
+   */
   get #size() {
     const { width, height } = element("view").getBoundingClientRect();
     return [Math.round(width * devicePixelRatio), Math.round(height * devicePixelRatio)];
@@ -245,7 +259,12 @@ class Page {
       { keys: ["+", "="], shown: "+", words: "Nearer", run: () => this.#zoom(1 / KEY_ZOOM) },
       { keys: ["-", "_"], shown: "−", words: "Farther", run: () => this.#zoom(KEY_ZOOM) },
       { keys: ["Home"], shown: "Home", words: "Reset the view", run: () => this.#home() },
-      { keys: ["1", "2", "3", "4", "5", "6"], shown: "1 … 6", words: "Views", run: (key) => this.#turnTo(VIEWS[Number(key) - 1]) },
+      {
+        keys: ["1", "2", "3", "4", "5", "6"],
+        shown: "1 … 6",
+        words: "Views",
+        run: (key) => this.#turnTo(VIEWS[Number(key) - 1]),
+      },
       { keys: ["b", "B"], shown: "B", words: "Bounds", run: () => this.#toggleBounds() },
       { keys: ["s", "S"], shown: "S", words: "Save the picture", run: () => void this.#save() },
       { keys: ["c", "C"], shown: "C", words: "Copy the camera", run: () => void this.#copy() },
@@ -255,7 +274,10 @@ class Page {
   }
 }
 
-/** @param {"asked" | "shown" | "refused"} state @param {string} text */
+/**
+ * @param {"asked" | "shown" | "refused"} state
+ * @param {string} text
+ */
 function served(state, text) {
   const words = { asked: "sdfc is drawing…", shown: "Drawn by sdfc, not by this browser", refused: text };
   if (document.getElementById("served-state")) write("served-state", words[state]);

@@ -11,7 +11,7 @@ import { Program } from "./program.js";
 const MOST_SAMPLES = 8; // at rest, spread over each pixel
 const RESTED = 140; // milliseconds without a move
 
-/** The views, by number: which shader draws them, and what its uniform `shown` is. */
+/** The views, by name: which shader draws them, and what its uniform `shown` is. */
 const VIEWS = Object.freeze({
   picture: { entry: "picture", shown: 0 },
   depth: { entry: "inspect", shown: 1 },
@@ -72,7 +72,10 @@ export class Painter {
     return { milliseconds: this.#pace.estimate(this.#size[0] * this.#size[1]), size: this.#size };
   }
 
-  /** Draw another scene, as soon as its shader is compiled. @param {Scene} scene */
+  /**
+   * Draw another scene, as soon as its shader is compiled.
+   * @param {Scene} scene
+   */
   show(scene) {
     this.#scene = scene;
     for (const drawable of this.#drawables) {
@@ -82,10 +85,14 @@ export class Painter {
       if (shaders[drawable.entry] === mine[drawable.entry]) drawable.scene = scene;
     }
     this.#drop((drawable) => drawable.scene !== scene && drawable !== this.#current);
-    this.touch();
+    if (this.#current?.scene === scene) this.touch();
+    else this.#ask(); // what is on the screen stays until then
   }
 
-  /** @param {Camera} camera @param {boolean} isMoving whether more moves are to be expected */
+  /**
+   * @param {Camera} camera
+   * @param {boolean} isMoving whether more moves are to be expected
+   */
   look(camera, isMoving) {
     this.#camera = camera;
     this.touch(isMoving);
@@ -97,7 +104,10 @@ export class Painter {
     this.touch();
   }
 
-  /** Whether it is another size. @param {[number, number]} size in pixels of the device */
+  /**
+   * Whether it is another size.
+   * @param {[number, number]} size in pixels of the device
+   */
   resize([width, height]) {
     if (width === this.#size[0] && height === this.#size[1]) return false;
     this.#size = [Math.max(1, width), Math.max(1, height)];
@@ -105,14 +115,20 @@ export class Painter {
     return true;
   }
 
-  /** What is shown has changed. @param {boolean} [isMoving] */
+  /**
+   * What is shown has changed.
+   * @param {boolean} [isMoving]
+   */
   touch(isMoving = false) {
     if (isMoving) this.#movedAt = performance.now();
     this.#samples = this.#row = 0;
     this.#ask();
   }
 
-  /** The picture as a PNG, once it is all there. @returns {Promise<?Blob>} */
+  /**
+   * The picture as a PNG, once it is all there.
+   * @returns {Promise<?Blob>}
+   */
   saved() {
     return new Promise((resolve) => {
       this.#wanted = { resolve };
@@ -120,6 +136,7 @@ export class Painter {
     });
   }
 
+  /** Whatever the context has to hold, made. */
   #open() {
     this.#isEmpty = true;
     this.#film = this.#gl ? new Film(this.#gl) : null;
@@ -127,6 +144,7 @@ export class Painter {
     this.touch();
   }
 
+  /** Go on with the next picture of the screen. */
   #ask() {
     if (this.#isAsked || !this.#gl || !this.#scene) return;
     this.#isAsked = true;
@@ -150,12 +168,16 @@ export class Painter {
     return true;
   }
 
-  /** Makes the wanted program the current one when it is ready; whether one is under way. @param {Scene} scene
-   * @param {WebGL2RenderingContext} gl */
+  /**
+   * Makes the wanted program the current one when it is ready; whether one is under way.
+   * @param {Scene} scene
+   * @param {WebGL2RenderingContext} gl
+   */
   #compile(gl, scene) {
     const { entry } = VIEWS[this.#view];
     const text = /** @type {Record<string, string>} */ (scene.told.shaders)[entry];
-    if (!text || this.#refused.get(entry) === text || (this.#current?.scene === scene && this.#current.entry === entry)) return false;
+    const isDrawn = this.#current?.scene === scene && this.#current.entry === entry;
+    if (isDrawn || !text || this.#refused.get(entry) === text) return false;
     let wanted = this.#drawables.find((d) => d.scene === scene && d.entry === entry);
     if (!wanted) {
       wanted = { program: new Program(gl, text), entry, scene };
@@ -176,12 +198,16 @@ export class Painter {
     return false;
   }
 
-  /** @param {(drawable: Drawable) => boolean} isOld */
+  /**
+   * Give programs back.
+   * @param {(drawable: Drawable) => boolean} isOld
+   */
   #drop(isOld) {
     for (const drawable of this.#drawables.filter(isOld)) drawable.program.delete();
     this.#drawables = this.#drawables.filter((drawable) => !isOld(drawable));
   }
 
+  /** Whether more moves are to be expected. */
   get #isMoving() {
     return performance.now() - this.#movedAt < RESTED;
   }
@@ -193,8 +219,13 @@ export class Painter {
     return this.#scale === 1 && this.#samples >= this.#pace.samples(this.#size[0] * this.#size[1], most);
   }
 
-  /** Some rows of a sample; the canvas is shown a sample when it is whole.
-   * @param {WebGL2RenderingContext} gl @param {Film} film @param {Drawable} drawable @param {Camera} camera */
+  /**
+   * Some rows of a sample; the canvas is shown a sample when it is whole.
+   * @param {WebGL2RenderingContext} gl
+   * @param {Film} film
+   * @param {Drawable} drawable
+   * @param {Camera} camera
+   */
   #paint(gl, film, drawable, camera) {
     if (this.#row === 0) this.#begin();
     const size = this.#frame;
@@ -225,6 +256,7 @@ export class Painter {
     if (this.#samples === 0) this.#scale = scale;
   }
 
+  /** The size on the film, in pixels. */
   get #frame() {
     const size = this.#size.map((side) => Math.max(1, Math.round(this.#scale * side)));
     return /** @type {[number, number]} */ (size);
@@ -237,7 +269,10 @@ export class Painter {
     if (this.#canvas.height !== height) this.#canvas.height = height;
   }
 
-  /** Hand out a finished picture; whether it may still move. @param {Film} film */
+  /**
+   * Hand out a finished picture; whether it may still move.
+   * @param {Film} film
+   */
   #deliver(film) {
     const wanted = this.#wanted;
     if (wanted && !this.#isMoving) {
@@ -249,8 +284,12 @@ export class Painter {
   }
 }
 
-/** Where in its pixel a sample lies: the first in the middle, the others where there is most room (the R2 sequence,
- * Roberts 2018). @param {number} sample @returns {[number, number]} in pixels from the middle */
+/**
+ * Where in its pixel a sample lies: the first in the middle, the others where there is most room (the R2 sequence,
+ * Roberts 2018).
+ * @param {number} sample
+ * @returns {[number, number]} in pixels from the middle
+ */
 function jitter(sample) {
   const at = (/** @type {number} */ step) => ((0.5 + sample * step) % 1) - 0.5;
   return [at(0.7548776662466927), at(0.5698402909980532)];

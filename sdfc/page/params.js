@@ -78,7 +78,10 @@ export class Params {
     return row;
   }
 
-  /** @param {Param} param @param {string} id */
+  /**
+   * @param {Param} param
+   * @param {string} id
+   */
   #color(param, id) {
     const input = made("input", { type: "color", id, ariaLabel: param.name });
     input.addEventListener("input", () => this.#set(param, linearOf(input.value), true));
@@ -86,7 +89,12 @@ export class Params {
     return input;
   }
 
-  /** A slider and a number for one component. @param {Param} param @param {string} id @param {number} index */
+  /**
+   * A slider and a number for one component.
+   * @param {Param} param
+   * @param {string} id
+   * @param {number} index
+   */
   #number(param, id, index) {
     const scale = param.unit === "angle" ? DEGREES : 1;
     const low = (param.low ?? -1) * scale;
@@ -120,12 +128,19 @@ export class Params {
     return [slider, amount];
   }
 
-  /** @param {Param} param @returns {number[]} */
+  /**
+   * @param {Param} param
+   * @returns {number[]}
+   */
   #value(param) {
     return this.#scene?.valueOf(param) ?? param.default;
   }
 
-  /** @param {Param} param @param {number[]} value @param {boolean} isMoving */
+  /**
+   * @param {Param} param
+   * @param {number[]} value
+   * @param {boolean} isMoving
+   */
   #set(param, value, isMoving) {
     this.#scene?.set(param, value);
     this.update();
@@ -133,11 +148,18 @@ export class Params {
   }
 }
 
-/** What controls there are, whatever they are set to. @param {Scene} scene */
+/**
+ * What controls there are, whatever they are set to.
+ * @param {Scene} scene
+ */
 const kinds = (scene) => scene.told.params.map((param) => ({ ...param, default: param.default.length }));
 
-/** Arrows move a slider by a hundredth of its range, with Shift by a tenth: the browsers' own steps differ.
- * @param {KeyboardEvent} event @param {HTMLInputElement} slider @param {number} range */
+/**
+ * Arrows move a slider by a hundredth of its range, with Shift by a tenth: the browsers' own steps differ.
+ * @param {KeyboardEvent} event
+ * @param {HTMLInputElement} slider
+ * @param {number} range
+ */
 function step(event, slider, range) {
   const sign = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
   if (!sign) return;
@@ -146,6 +168,10 @@ function step(event, slider, range) {
   slider.dispatchEvent(new Event("input"));
 }
 
-/** @template {keyof HTMLElementTagNameMap} T @param {T} name @param {object} properties
- * @returns {HTMLElementTagNameMap[T]} */
+/**
+ * @template {keyof HTMLElementTagNameMap} T
+ * @param {T} name
+ * @param {object} properties
+ * @returns {HTMLElementTagNameMap[T]}
+ */
 const made = (name, properties) => Object.assign(document.createElement(name), properties);

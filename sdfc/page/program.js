@@ -26,7 +26,10 @@ export class Program {
     gl.linkProgram(this.#made);
   }
 
-  /** @param {number} kind @param {string} text */
+  /**
+   * @param {number} kind
+   * @param {string} text
+   */
   #shader(kind, text) {
     const gl = this.#gl;
     const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
@@ -42,7 +45,10 @@ export class Program {
     return parallel === null || this.#gl.getProgramParameter(this.#made, parallel.COMPLETION_STATUS_KHR) === true;
   }
 
-  /** What the driver has against the shader; empty if nothing. To be asked once it is done. @returns {string} */
+  /**
+   * What the driver has against the shader; empty if nothing. To be asked once it is done.
+   * @returns {string}
+   */
   get complaint() {
     const gl = this.#gl;
     if (gl.getProgramParameter(this.#made, gl.LINK_STATUS) || gl.isContextLost()) return "";
@@ -50,8 +56,10 @@ export class Program {
     return [...logs, gl.getProgramInfoLog(this.#made)].filter(Boolean).join("\n") || "the shader cannot be compiled";
   }
 
-  /** Draw over everything that is bound. Uniforms that it has not are passed over.
-   * @param {Record<string, number[]>} values */
+  /**
+   * Draw over everything that is bound. Uniforms that it has not are passed over.
+   * @param {Record<string, number[]>} values
+   */
   draw(values) {
     const gl = this.#gl;
     gl.useProgram(this.#made);

@@ -2,15 +2,25 @@
 
 const READ = 2600; // milliseconds that a notice stays
 
-/** @param {string} id @returns {HTMLElement} */
+/**
+ * @param {string} id
+ * @returns {HTMLElement}
+ */
 export const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
-/** Replace a text, if it is another: what is announced is announced once. @param {string} id @param {string} text */
+/**
+ * Replace a text, if it is another: what is announced is announced once.
+ * @param {string} id
+ * @param {string} text
+ */
 export function write(id, text) {
   if (element(id).textContent !== text) element(id).textContent = text;
 }
 
-/** @param {string} title @param {string} text with its lines and carets */
+/**
+ * @param {string} title
+ * @param {string} text with its lines and carets
+ */
 export function problem(title, text) {
   const section = element("problem");
   /** @type {HTMLElement} */ (section.querySelector("h2")).textContent = title;

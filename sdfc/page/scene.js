@@ -16,7 +16,10 @@
 export class Scene {
   /** @type {Map<string, number[]>} by the param's name */ #set = new Map();
 
-  /** @param {Told} told @param {?Scene} before whose settings stay, where its params have not changed */
+  /**
+   * @param {Told} told
+   * @param {?Scene} before whose settings stay, where its params have not changed
+   */
   constructor(told, before = null) {
     this.told = told;
     /** @type {Record<string, number[]>} */
@@ -24,7 +27,10 @@ export class Scene {
     if (before) this.#keep(before);
   }
 
-  /** What was set in the scene before, where the text says the same as it did. @param {Scene} before */
+  /**
+   * What was set in the scene before, where the text says the same as it did.
+   * @param {Scene} before
+   */
   #keep(before) {
     for (const param of this.told.params) {
       const was = before.told.params.find((p) => p.name === param.name);
@@ -34,18 +40,27 @@ export class Scene {
     }
   }
 
-  /** Every uniform but the camera's, as the viewer has set them. @returns {Record<string, number[]>} */
+  /**
+   * Every uniform but the camera's, as the viewer has set them.
+   * @returns {Record<string, number[]>}
+   */
   get uniforms() {
     const set = this.told.params.filter((p) => this.#set.has(p.name));
     return { ...this.values, ...Object.fromEntries(set.map((p) => [p.uniform, this.valueOf(p)])) };
   }
 
-  /** The value of every param, by name. @returns {Record<string, number[]>} */
+  /**
+   * The value of every param, by name.
+   * @returns {Record<string, number[]>}
+   */
   get params() {
     return Object.fromEntries(this.told.params.map((p) => [p.name, this.valueOf(p)]));
   }
 
-  /** @param {Param} param @returns {number[]} */
+  /**
+   * @param {Param} param
+   * @returns {number[]}
+   */
   valueOf(param) {
     return this.#set.get(param.name) ?? this.values[param.uniform] ?? param.default;
   }
@@ -55,22 +70,34 @@ export class Scene {
     return this.#set.size > 0;
   }
 
-  /** Whether the viewer has set it. @param {Param} param */
+  /**
+   * Whether the viewer has set it.
+   * @param {Param} param
+   */
   isSet(param) {
     return this.#set.has(param.name);
   }
 
-  /** @param {Param} param @param {number[]} value */
+  /**
+   * @param {Param} param
+   * @param {number[]} value
+   */
   set(param, value) {
     this.#set.set(param.name, value);
   }
 
-  /** Back to the value in the text. @param {Param} param */
+  /**
+   * Back to the value in the text.
+   * @param {Param} param
+   */
   reset(param) {
     this.#set.delete(param.name);
   }
 
-  /** Numbers were edited in the text; a param among them follows. @param {Pick<Told, "values">} edit */
+  /**
+   * Numbers were edited in the text; a param among them follows.
+   * @param {Pick<Told, "values">} edit
+   */
   follow({ values }) {
     for (const param of this.told.params) {
       const value = values[param.uniform];
@@ -79,14 +106,24 @@ export class Scene {
     Object.assign(this.values, values);
   }
 
-  /** Where things are now. @param {Pick<Told, "bounds" | "parts">} boxes */
+  /**
+   * Where things are now.
+   * @param {Pick<Told, "bounds" | "parts">} boxes
+   */
   place({ bounds, parts }) {
     Object.assign(this.told, { bounds, parts });
   }
 }
 
-/** Whether the same values are good for both. @param {Param} a @param {Param} b */
+/**
+ * Whether the same values are good for both.
+ * @param {Param} a
+ * @param {Param} b
+ */
 const isSame = (a, b) => alike({ ...a, default: 0 }, { ...b, default: 0 });
 
-/** @param {unknown} a @param {unknown} b */
+/**
+ * @param {unknown} a
+ * @param {unknown} b
+ */
 export const alike = (a, b) => JSON.stringify(a) === JSON.stringify(b);

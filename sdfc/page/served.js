@@ -33,7 +33,10 @@ export class Served {
     return this.#image.hidden ? null : this.#blob;
   }
 
-  /** What is shown has changed, or the view has. @param {?Order} order */
+  /**
+   * What is shown has changed, or the view has.
+   * @param {?Order} order
+   */
   want(order) {
     clearTimeout(this.#timer);
     this.#request += 1; // what is under way has become stale
@@ -46,12 +49,18 @@ export class Served {
     }, RESTED);
   }
 
-  /** A picture follows. @param {number} request */
+  /**
+   * A picture follows.
+   * @param {number} request
+   */
   announce(request) {
     this.#announced = request;
   }
 
-  /** @param {number} request @param {string} text */
+  /**
+   * @param {number} request
+   * @param {string} text
+   */
   refused(request, text) {
     if (request === this.#request) this.#told("refused", text);
   }
@@ -74,8 +83,11 @@ export class Served {
   }
 }
 
-/** The size itself, or the largest of its shape that the server draws. @param {[number, number]} size
- * @returns {[number, number]} */
+/**
+ * The size itself, or the largest of its shape that the server draws.
+ * @param {[number, number]} size
+ * @returns {[number, number]}
+ */
 function bounded(size) {
   const scale = Math.min(1, LARGEST / Math.max(...size));
   const side = (/** @type {number} */ pixels) => Math.max(SMALLEST, Math.round(scale * pixels));
