@@ -15,6 +15,7 @@ from sdfc.facts.curvature import is_convex_solid
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.ranges import Ranges
 from sdfc.facts.rule import Rules
+from sdfc.passes.bare import bare
 from sdfc.passes.fence import fence
 from sdfc.passes.flatten import flatten
 from sdfc.passes.negate import negate
@@ -133,7 +134,13 @@ PASSES = (
         "step rules know leaves and their complements",
         lambda s, w: negate(s, w.scene.shapes, w.library.definition),
     ),
+    Pass("bare", "what stands under no operation is known now", lambda s, w: bare(s, w.scene.shapes, w.scene.values)),
     Pass("prune", "boxes are known now", lambda s, w: prune(s, w.scene.shapes, w.bounds)),
+    Pass(
+        "place again",
+        "a stretched blend that turned out to be a union lets its transform through",
+        lambda s, w: place(s, w.scene.shapes, w.scene.values),
+    ),
     Pass("flatten again", "De Morgan and pruning made new nests", lambda s, w: flatten(s, w.scene.shapes)),
 )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sdfc.facts.bend import Bends, core_of
 from sdfc.facts.bounds import Bounds
@@ -32,6 +32,7 @@ class Rule:
     bend: Expr | None = None
     by_pieces: bool = False
     why: str = ""
+    is_core: bool = False  # the field is its own core
 
 
 class Rules:
@@ -83,16 +84,17 @@ class Rules:
         steps = trial.balls(slope)
         least, best, tried = steps, Rule(), [f"{steps:.3g} steps by balls"]
         if bend is not None:
-            steps = trial.parabolas(core_of(shape, value), slope, self._middle(bend))
+            core = core_of(shape, value)
+            steps = trial.parabolas(core, slope, self._middle(bend))
             tried.append(f"{steps:.3g} by parabolas")
             if _PARABOLA * steps <= least:
-                least, best = _PARABOLA * steps, Rule(bend)
+                least, best = _PARABOLA * steps, Rule(bend, is_core=core is value)
         if least > _FEW and not is_exact:
             steps, price = trial.pieces(slope), self._price(value)
             tried.append(f"{steps:.3g} by pieces at {price:.2g} times the cost")
             if price * steps < least:
                 best = Rule(by_pieces=True)
-        return Rule(best.bend, best.by_pieces, ", ".join(tried))
+        return replace(best, why=", ".join(tried))
 
     def _value(self, shape: Apply, inside: bool) -> Expr:
         value = Lowering().value(shape, self._bounds.values.input("p"))

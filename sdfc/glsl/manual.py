@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, assert_never
 
 from sdfc.glsl.targets.record import Brief, Control, Target
 
@@ -124,8 +124,10 @@ def _signatures(brief: Brief) -> dict[str, str]:
             return {}
         case "tracer":
             return functions | trace
-        case _:
+        case "field":
             return functions
+        case _:
+            assert_never(brief.part)
 
 
 def numbers(values: Sequence[float]) -> str:

@@ -52,13 +52,13 @@ BEYOND BOX_HIGH BOX_LOW Bracket CENTRE CUT EYE FAR Found GROW HALF_VIEW MANY_STE
 Properties RADIUS State Surface TARGET TILE UP VERTICAL ambient axis_x axis_y axis_z ball blended blended_of both
 box_distance box_distance_span box_interval bracket camera_ray chord chord_reach clearance cleared clip_from_scene
 color_out cone depth_row direction_out distinct encode_srgb enter entry evaluations events eye far_outside far_point
-farther farther_of first_out gone gradient haste heat iMouse iResolution iTime inside leave light_at look look_up_tile
-mainImage map map_span march material meeting narrowed near_point nearer nearer_of nearest normal_out occlusion_weight
-openness openness_map origin_out own own_tolerance painted_as parabola picture piece pixel pixel_centre point_falloff
-position_out prepare properties radiance radiance_out ray_ahead ray_cone ray_origin rebase reflect_light rounding
-scene_from_clip sdf shown sky sky_radiance span_complement span_hull span_intersection span_union span_within start_out
-start_state steps sun_disc sunk_parabola surface tangent tile_ray tolerance tone_map trace trace_pixel trace_ray
-transmit travelled turned unfinished weight_row window within
+farther farther_of first_out gone gradient haste heat iMouse iResolution iTime inside leave light_at line_root look
+look_up_tile mainImage map map_span march material meeting narrowed near_point nearer nearer_of nearest normal_out
+occlusion_weight openness openness_map origin_out own own_tolerance painted_as parabola picture piece pixel
+pixel_centre point_falloff position_out prepare properties radiance radiance_out ray_ahead ray_cone ray_origin rebase
+reflect_light rounding scene_from_clip sdf shown sky sky_radiance slab_interval span_complement span_hull
+span_intersection span_union span_within start_out start_state steps sun_disc sunk_parabola surface tangent tile_ray
+tolerance tone_map trace trace_pixel trace_ray transmit travelled turned unfinished weight_row window within
 """
 
 # Locals of templates and of generated statements: no function and no local of an expression may take these.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from sdfc.field.core import DEEP
 from sdfc.field.graph import Expr, FieldGraph
 from sdfc.glsl.body import Body, own_point
+from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Functions, Role
 from sdfc.plan.steps import Ball
 
@@ -23,7 +24,8 @@ def parabola_next(graph: FieldGraph, functions: Functions, body: Body, step: Bal
     bend = graph.max(step.bend * part.own_grow * part.own_grow * part.stretch, 1e-6)
     if cut:
         deep = body.text(DEEP * part.stretch)
-        return f"sunk_parabola(t, {radius}, {name}.yz, {body.text(bend)}, sunk, {deep}, fine)"
+        per = literal(max(step.lipschitz, 1e-9) if step.is_core else 0.0)
+        return f"sunk_parabola(t, {radius}, {name}.yz, {body.text(bend)}, {per}, sunk, {deep}, fine)"
     return f"parabola(t, {radius}, {name}.yz, {body.text(bend)}, eps)"
 
 

@@ -13,12 +13,13 @@ from typing import assert_never
 
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.glsl.body import Body, own_point
-from sdfc.glsl.expression import type_name
+from sdfc.glsl.expression import literal, type_name
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
 from sdfc.plan.gather import is_translation
 from sdfc.plan.steps import (
+    FLATTEST,
     All,
     Any,
     Ball,
@@ -178,7 +179,7 @@ class SurfaceWriter:
                 return self._leaf(step.part, body, step.inside, Role.SURFACE, _NOWHERE)
             case Ball():
                 # over its constant: then the gradient says how much of a distance the value is
-                return self._leaf(step.part, body, step.inside, Role.SURFACE, sunk, step.scale)
+                return self._leaf(step.part, body, step.inside, Role.SURFACE, sunk, step)
             case Tangent():
                 return self._leaf(step.part, body, True, Role.SURFACE, sunk)
             case Chord():
@@ -221,8 +222,8 @@ class SurfaceWriter:
     def _made(self, constructor: str, field: str, rank: str, *more: str) -> str:
         return f"{constructor}({', '.join([field, *[rank] * self._looks_back, *more])})"
 
-    def _leaf(self, part: Part, body: Body, inside: bool, role: Role, sunk: str, scale: float = 1.0) -> str:
-        stretch = part.stretch * scale
+    def _leaf(self, part: Part, body: Body, inside: bool, role: Role, sunk: str, ball: Ball | None = None) -> str:
+        stretch = part.stretch * (1.0 if ball is None else ball.scale)
         q = body.point(own_point(part.inverse, self._p), f"q_{part.name}")
         call = self._functions.of_part(part, role)
         field, sign = body.call(call, [q]), "" if inside else "-"
@@ -238,12 +239,24 @@ class SurfaceWriter:
         if self._looks_back:
             before = body.point(own_point(part.inverse, self._before), f"q_{part.name}_before")
             scaled = "" if stretch.is_constant and stretch.number == 1.0 else f"{body.text(stretch)} * "
-            rank = f"{sign}{scaled}{body.call(call, [before])}.w{'' if sunk == _NOWHERE else f' + {sunk}'}"
+            rank = f"{sign}{scaled}{body.call(call, [before])}.w"
+            if ball is not None and ball.is_no_distance:
+                body.once(f"vec4 flat_{part.name} = {field};")
+                field = f"flat_{part.name}"
+                rank = self._flat(ball, field, rank, sunk)
+            else:
+                rank += "" if sunk == _NOWHERE else f" + {sunk}"
         if len(part.looks) > 1:
             self._painted = True
             look = body.call(self._functions.of_part(part, Role.LOOK), [q])
             return self._made("painted", sign + field, rank, look)
         return self._made(self._names[id(part.material)], sign + field, rank)
+
+    def _flat(self, ball: Ball, field: str, value: str, sunk: str) -> str:
+        """The rank of what is no distance: how far off it is by its slope. What goes by pieces is sunk by that too."""
+        if sunk != _NOWHERE:
+            value += f" + {sunk} * abs(dot({field}.xyz, d))" if ball.ahead else f" + {sunk}"
+        return f"({value}) / max(length({field}.xyz), {literal(FLATTEST)})"
 
     def _turned(self, part: Part, name: str, stretch: Expr) -> Expr:
         """The gradient in the scene's space: A^T g for the map p -> A p + b to the part's own space."""

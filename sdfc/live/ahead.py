@@ -6,6 +6,7 @@ became of it. The end of the input is the end of the process.
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import json
 import os
@@ -35,8 +36,9 @@ def main() -> None:
     device = open_device()
     with channel, channel.makefile("r", encoding="utf-8") as jobs:
         for line in jobs:
+            answer = _answer(device, json.loads(line))
             try:
-                channel.sendall(f"{_answer(device, json.loads(line))}\n".encode())
+                channel.sendall(f"{answer}\n".encode())
             except OSError:  # nobody waits any more
                 return
 
@@ -82,9 +84,10 @@ def _states_of(name: str) -> list[str]:
     """What the threads of this process that have this in their names do: S sleep, R run, D wait for a disk."""
     found = []
     for file in Path("/proc/self/task").glob("*/stat"):
-        head, _, tail = file.read_text().rpartition(")")
-        if name in head:
-            found.append(tail.split()[0])
+        with contextlib.suppress(OSError):  # a thread that has just ended
+            head, _, tail = file.read_text().rpartition(")")
+            if name in head:
+                found.append(tail.split()[0])
     return found
 
 

@@ -104,7 +104,8 @@ class Session:
     def _next(self, snapshot: Snapshot) -> tuple[Shown, Stopwatch]:
         """What is to be shown now. What waits is given up, or goes on to wait with other numbers."""
         watch, waiting = Stopwatch(), self._waiting
-        shown = self._edits.next(snapshot, watch, waiting.shown if waiting is not None else None)
+        base = waiting.shown if waiting is not None and waiting.is_trusted else None
+        shown = self._edits.next(snapshot, watch, base)
         if waiting is not None and shown.built.code == waiting.shown.built.code:
             shown, watch = replace(shown, speed=waiting.shown.speed), waiting.watch
         self._painter.give_up(but=shown.built.compiled)

@@ -13,6 +13,7 @@ from sdfc.api.request import View
 SMALLEST_SIDE, LARGEST_SIDE = 16, 1920  # pixels of a picture
 _MOST_BRACKETS = 64  # opened in a message: a camera and sixteen params have far fewer
 _LARGEST_NUMBER = 2**53  # that a request may have: as JavaScript counts
+_LARGEST_FLOAT = 3.4e38  # that a shader has; differences of such are finite here
 _KEYS = frozenset({"type", "request", "camera", "params", "size"})
 _CAMERA = frozenset({"eye", "target", "up", "fov", "height"})
 
@@ -102,8 +103,8 @@ def _number(given: object) -> float:
         number = float(given) if isinstance(given, int | float) and not isinstance(given, bool) else math.nan
     except OverflowError:
         number = math.inf
-    if not math.isfinite(number):
-        raise WishError("not a finite number")
+    if not abs(number) <= _LARGEST_FLOAT:
+        raise WishError("not a number that a shader has")
     return number
 
 

@@ -185,10 +185,11 @@ class Worker:
         self._lost += 1
         self.helps = self._lost < _MOST_LOST
         what = f"took more than {self._patience:g} s" if isinstance(error, TimeoutError) else f"died (exit code {code})"
-        self._note(
-            f"the process that compiles shaders ahead {what}; this one compiles "
-            + ("that shader" if self.helps else "all shaders")
-        )
+        with contextlib.suppress(OSError):  # nobody reads it: whoever waits for the job is told all the same
+            self._note(
+                f"the process that compiles shaders ahead {what}; this one compiles "
+                + ("that shader" if self.helps else "all shaders")
+            )
 
     def _end(self) -> int | None:
         with self._lock:

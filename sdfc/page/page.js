@@ -180,8 +180,9 @@ class Page {
   }
 
   async #save() {
+    if (!this.#scene) return; // or the first picture would save itself when it comes
     const blob = this.#served.blob ?? (await this.#painter.saved());
-    if (!blob || !this.#scene) return;
+    if (!blob) return;
     const stem = this.#scene.told.title.replace(/\.[^.]*$/, "");
     const link = document.createElement("a");
     link.download = this.#view === "picture" ? `${stem}.png` : `${stem}-${this.#view}.png`;

@@ -78,6 +78,7 @@ export class Painter {
    */
   show(scene) {
     this.#scene = scene;
+    this.#refused.clear(); // the page has just taken down what was said of it: a text that is still bad is told again
     for (const drawable of this.#drawables) {
       // the same text is the same shader: an edit of comments, or one that was undone at once
       const shaders = /** @type {Record<string, string>} */ (drawable.scene.told.shaders);

@@ -74,6 +74,8 @@ export class Served {
     this.#image.src = url;
     try {
       await this.#image.decode();
+    } catch {
+      return; // a newer one has taken its place
     } finally {
       URL.revokeObjectURL(url);
     }

@@ -218,7 +218,7 @@ class Prover:
     def _ruled(self, part: Part, lipschitz: float, leaf: Leaf, rule: Rule) -> Ball:
         self._pieces += rule.by_pieces
         ahead = f"ahead_{self._pieces}" if rule.by_pieces else ""
-        return Ball(part, lipschitz, leaf.inside, rule.bend, ahead, rule.why)
+        return Ball(part, lipschitz, leaf.inside, rule.bend, ahead, rule.why, rule.is_core)
 
     def _within(self, box: Box, step: Step, needed: bool) -> Within:
         self._boxes += 1

@@ -20,6 +20,8 @@ from sdfc.shape.graph import Apply
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
 
+FLATTEST = 1e-6  # a gradient that is less says nothing of how far off a surface is
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
@@ -90,11 +92,17 @@ class Ball:
     bend: Expr | None = None
     ahead: str = ""
     why: str = ""  # this rule: what rays that were tried took by each
+    is_core: bool = False  # the field is its own core: the constant times as much as the radius of the ball
 
     @property
     def scale(self) -> float:
         """What makes a value at most a distance; 1 where no constant is known, and it says nothing of a distance."""
         return 1.0 / max(self.lipschitz, 1e-9) if math.isfinite(self.lipschitz) else 1.0
+
+    @property
+    def is_no_distance(self) -> bool:
+        """Whether nothing is known of how far off the surface is where the field has some value: it may be flat."""
+        return exactness(self.part.shape)[self.part.shape.id] is Exactness.NONE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -197,12 +205,15 @@ def may_flatten(step: Within) -> bool:
 
 
 def may_have_seams(step: Step) -> bool:
-    """Whether a face may be buried in a seam: one that cuts a part of a union, or a part that is marched."""
+    """Whether values at a hit may not tell whose face it is.
+
+    It may be buried in a seam: one that cuts a part of a union, or a part that is marched. Or a value is no distance.
+    """
     match step:
         case All():
             return not is_closed(step) or any(may_have_seams(s) for s in step.steps)
         case Any():
-            return any(_is_cut(s) or may_have_seams(s) for s in step.steps)
+            return any(_is_cut(s) or _is_no_distance(s) or may_have_seams(s) for s in step.steps)
         case Within():
             return may_have_seams(step.step)
         case Closed() | Many() | Tangent() | Chord() | Ball() | Blend():
@@ -217,6 +228,16 @@ def _is_cut(step: Step) -> bool:
             return True
         case Within():
             return _is_cut(step.step)
+        case _:
+            return False
+
+
+def _is_no_distance(step: Step) -> bool:
+    match step:
+        case Ball():
+            return step.is_no_distance
+        case Within():
+            return _is_no_distance(step.step)
         case _:
             return False
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from sdfc.facts.box import Box
 from sdfc.plan.plan import Plan
 from sdfc.plan.steps import (
+    FLATTEST,
     All,
     Any,
     Ball,
@@ -74,11 +75,12 @@ class _Place:
     """Hits p (3, n), the way back (3, n) to where parts are ranked, and what hits are right to (n,)."""
 
     p: Array
+    d: Array
     back: Array
     fine: Array
 
     def take(self, index: NDArray[np.int64]) -> _Place:
-        return _Place(self.p[:, index], self.back[:, index], self.fine[index])
+        return _Place(self.p[:, index], self.d[:, index], self.back[:, index], self.fine[index])
 
 
 class SurfaceFold:
@@ -95,7 +97,7 @@ class SurfaceFold:
     def at(self, p: Array, d: Array, fine: Array) -> Surface:
         """The surface at hits p (3, n) of rays along unit vectors d (3, n), right to `fine` (n,)."""
         back = -_BACK * d if self._looks_back else np.zeros_like(d)
-        return self._fold(self._plan.root, _Place(p, back, fine), np.zeros_like(fine))
+        return self._fold(self._plan.root, _Place(p, d, back, fine), np.zeros_like(fine))
 
     def distance(self, p: Array, reach: float) -> Array:
         """What tells how open the sky is: at most the distance (n,) to what is within `reach`; the right sign."""
@@ -108,8 +110,7 @@ class SurfaceFold:
             case Closed():
                 return self._leaf(step.part, place, step.inside, np.zeros_like(sunk))
             case Ball():
-                # over its constant: then the gradient says how much of a distance the value is
-                return self._leaf(step.part, place, step.inside, sunk, scale=step.scale)
+                return self._ball(step, place, sunk)
             case Tangent():
                 return self._leaf(step.part, place, True, sunk)
             case Chord():
@@ -153,6 +154,16 @@ class SurfaceFold:
         else:
             index = np.full(place.p.shape[1], self._index[id(part.material)])
         return Surface(field, before[3] + sunk, index, self._looks[:, index])
+
+    def _ball(self, step: Ball, place: _Place, sunk: Array) -> Surface:
+        """Over its constant: then the gradient says how much of a distance the value is."""
+        if not step.is_no_distance:
+            return self._leaf(step.part, place, step.inside, sunk, scale=step.scale)
+        found = self._leaf(step.part, place, step.inside, np.zeros_like(sunk), scale=step.scale)
+        gradient = found.field[:3]
+        depth = sunk * np.abs(np.sum(gradient * place.d, axis=0)) if step.ahead else sunk
+        steepness = np.maximum(np.linalg.norm(gradient, axis=0), FLATTEST)
+        return Surface(found.field, (found.rank + depth) / steepness, found.material, found.look)
 
     def _blend(self, tree: BlendTree, place: _Place, sunk: Array) -> Surface:
         match tree:

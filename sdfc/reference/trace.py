@@ -287,7 +287,9 @@ class StepTracer:
         value, core, slope = self._formulas.parabola(step.part, here.rays.at(here.t), here.rays.d)
         radius = value / max(step.lipschitz, 1e-9)
         if cut:  # next to the face, and in the layer by which it is sunk, the parabola too must come down so far
-            per = np.where(radius != 0.0, core / np.where(radius != 0.0, radius, 1.0), 1.0)
+            at_face = np.where(np.abs(slope) > 1e-5, np.abs(slope), 1.0)
+            per = np.where(radius != 0.0, core / np.where(radius != 0.0, radius, 1.0), at_face)
+            per = np.full_like(per, max(step.lipschitz, 1e-9)) if step.is_core else per
             layer = np.minimum(2.0 * near * per, DEEP * self._formulas.constant(step.part.stretch)[0])
             core = core + np.where(radius < near, layer, 0.0)
             radius = radius + 3.0 * near

@@ -26,9 +26,10 @@ float parabola(float t, float r, vec2 v, float bend, float eps) {
 
 // The same where the solid is looked for `sunk` deeper. Next to its face, and within the layer between, the parabola must
 // come down as far by the core's own measure: a ray that runs along the layer would creep. It is known to hold down to
-// `deep`.
-float sunk_parabola(float t, float r, vec2 v, float bend, float sunk, float deep, float eps) {
-    float layer = max(sunk - eps, 0.0) * (r != 0.0 ? v.x / r : 1.0);
+// `deep`. The core is `per` as much as r, where that is known; on the face itself its slope says it, if there is any.
+float sunk_parabola(float t, float r, vec2 v, float bend, float per, float sunk, float deep, float eps) {
+    float measure = per > 0.0 ? per : r != 0.0 ? v.x / r : abs(v.y) > 1e-5 ? abs(v.y) : 1.0;
+    float layer = max(sunk - eps, 0.0) * measure;
     return parabola(t, sunk + r, vec2(v.x + (r < eps ? min(layer, deep) : 0.0), v.y), bend, eps);
 }
 

@@ -187,6 +187,28 @@ def test_what_may_not_be_what_was_read_is_shown_and_not_built_upon(desk: Desk) -
     assert update is not None and update.speed is Speed.SAME_SHADER, "compiled again, by sdfc"
 
 
+def test_what_waits_and_may_not_be_what_was_read_is_not_built_upon(
+    desk: Desk, picture_of: Callable[[str], bytes]
+) -> None:
+    """An import is other for as long as the compiler reads it, and then what it was."""
+    part = desk.scene.with_name("part.sdf")
+    there = "def many = 2\n"
+    part.write_text(there)
+    text = 'import "part.sdf"\n' + BALLS.replace("def many = 3\n", "")
+    desk.scene.write_text(text)
+    desk.begins(THIRD)
+    desk.scene.write_text(text)
+    seen = take(desk.scene)
+    part.write_text("def many = 1\n")
+    assert desk.session.begin(seen) is None
+    desk.session.distrust()
+    part.write_text(there)
+    desk.session.begin(take(desk.scene))
+    desk.worker.finishes()
+    desk.session.go_on()
+    assert desk.picture() == picture_of(OTHER)
+
+
 @dataclass
 class Served:
     """A desk with pages, and one who looks at them."""

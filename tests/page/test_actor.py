@@ -59,7 +59,12 @@ def test_a_shader_that_the_driver_refuses_is_told(actor: Actor, page: Open) -> N
     tab.until("!document.querySelector('#problem').hidden")
     assert "ERROR" in tab.text("#problem pre")
     assert share_of_others(picture(tab)[:80], before[:80]) == 0, "the last good picture stays"
-    actor.say({**actor.scene, "id": 3})
+    actor.say({"type": "errors", "text": "s.sdf:1:1: error: no", "diagnostics": [{"message": "no"}]})
+    tab.until("document.querySelector('#problem pre').textContent.includes('s.sdf')")
+    actor.say({**actor.scene, "id": 3, "shaders": shaders})
+    tab.until("document.querySelector('#problem pre').textContent.includes('ERROR')")
+    assert not tab.run("document.querySelector('#problem').hidden"), "and is told again"
+    actor.say({**actor.scene, "id": 4})
     tab.until("document.querySelector('#problem').hidden")
 
 

@@ -22,6 +22,7 @@ from shape_trees import (
     some_params,
 )
 
+from sdfc.passes.bare import bare
 from sdfc.passes.flatten import flatten
 from sdfc.passes.negate import negate
 from sdfc.passes.own_origin import frame_of, own_origin
@@ -39,6 +40,7 @@ RUN: dict[str, Callable[[Shape, World], Shape]] = {
     "paint": lambda s, w: paint(s, w.shapes),
     "place": lambda s, w: place(s, w.shapes, w.values),
     "negate": lambda s, w: negate(s, w.shapes, w.library.definition),
+    "bare": lambda s, w: bare(s, w.shapes, w.values),
     "prune": lambda s, w: prune(s, w.shapes, w.bounds),
 }
 MENU = Menu(solids=SOLIDS | USER_SOLIDS, materials=True)
@@ -113,7 +115,7 @@ def test_all_passes_after_each_other(data: st.DataObject, seed: int) -> None:
     world = World()
     shape = data.draw(solids(world, MENU))
     after = shape
-    for name in ("recognise", "flatten", "paint", "place", "negate", "prune", "flatten"):
+    for name in ("recognise", "flatten", "paint", "place", "negate", "bare", "prune", "place", "flatten"):
         after = RUN[name](after, world)
     check_same_solid(world, shape, after, seed)
     for name, promise in PROMISES.items():

@@ -275,6 +275,14 @@ def nest(step: str, depth: int) -> str:
     return f"scene {{ {text} }}"
 
 
+@pytest.mark.parametrize("stretch", [".scale([0.4, 1.5, 1])", ".shear(xy: 0.5)", ".scale(2)", ""])
+def test_a_stretched_blend_that_is_a_union_after_all(stretch: str) -> None:
+    """Its transform stopped at the blend; what it blends is out of each other's reach."""
+    parts = "sphere(0.3) box([0.2, 0.2, 0.2]).rotate(y: 30deg).translate([2, 0, 0])"
+    made = compiled(f"scene {{ union(blend: 0.02) {{ {parts} }}{stretch} plane(normal: [0, 1, 0], offset: -0.9) }}")
+    assert len(leaves_of(made.plan.root)) == 3 and all(isinstance(leaf, Closed) for leaf in leaves_of(made.plan.root))
+
+
 @pytest.mark.parametrize(
     "text",
     [
