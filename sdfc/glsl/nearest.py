@@ -17,7 +17,7 @@ from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.source import joined, parse, renamed
 from sdfc.glsl.surface import PROPERTIES, SurfaceWriter, property_of
-from sdfc.plan.steps import Blend, Part, Step, leaves_of
+from sdfc.plan.steps import Ball, Blend, Part, Step, leaves_of
 from sdfc.shape.material import Material
 
 _NAMES = {
@@ -99,7 +99,16 @@ class NearestWriter(SurfaceWriter):
         body.add(f"return Properties({', '.join(texts)});")
         return body.lines
 
-    def _leaf(self, part: Part, body: Body, inside: bool, role: Role, sunk: str, scale: float = 1.0) -> str:
+    def _leaf(
+        self,
+        part: Part,
+        body: Body,
+        inside: bool,
+        role: Role,
+        sunk: str,
+        scale: float = 1.0,
+        flat: Ball | None = None,
+    ) -> str:
         # the operands of a blend are asked for their distances already: those, its weights need as they are
         own = 1.0 if role is Role.DISTANCE_SURFACE else 1.0 / max(self._slopes[id(part)], 1e-9)
         return super()._leaf(part, body, inside, Role.DISTANCE_SURFACE, _NO_SINKING, own)

@@ -179,7 +179,8 @@ class SurfaceWriter:
                 return self._leaf(step.part, body, step.inside, Role.SURFACE, _NOWHERE)
             case Ball():
                 # over its constant: then the gradient says how much of a distance the value is
-                return self._leaf(step.part, body, step.inside, Role.SURFACE, sunk, step)
+                flat = step if step.is_no_distance else None
+                return self._leaf(step.part, body, step.inside, Role.SURFACE, sunk, step.scale, flat)
             case Tangent():
                 return self._leaf(step.part, body, True, Role.SURFACE, sunk)
             case Chord():
@@ -222,8 +223,18 @@ class SurfaceWriter:
     def _made(self, constructor: str, field: str, rank: str, *more: str) -> str:
         return f"{constructor}({', '.join([field, *[rank] * self._looks_back, *more])})"
 
-    def _leaf(self, part: Part, body: Body, inside: bool, role: Role, sunk: str, ball: Ball | None = None) -> str:
-        stretch = part.stretch * (1.0 if ball is None else ball.scale)
+    def _leaf(
+        self,
+        part: Part,
+        body: Body,
+        inside: bool,
+        role: Role,
+        sunk: str,
+        scale: float = 1.0,
+        flat: Ball | None = None,
+    ) -> str:
+        """`flat`: the step, where its values are no distances."""
+        stretch = part.stretch * scale
         q = body.point(own_point(part.inverse, self._p), f"q_{part.name}")
         call = self._functions.of_part(part, role)
         field, sign = body.call(call, [q]), "" if inside else "-"
@@ -240,10 +251,10 @@ class SurfaceWriter:
             before = body.point(own_point(part.inverse, self._before), f"q_{part.name}_before")
             scaled = "" if stretch.is_constant and stretch.number == 1.0 else f"{body.text(stretch)} * "
             rank = f"{sign}{scaled}{body.call(call, [before])}.w"
-            if ball is not None and ball.is_no_distance:
+            if flat is not None:
                 body.once(f"vec4 flat_{part.name} = {field};")
                 field = f"flat_{part.name}"
-                rank = self._flat(ball, field, rank, sunk)
+                rank = _flat_rank(flat, field, rank, sunk)
             else:
                 rank += "" if sunk == _NOWHERE else f" + {sunk}"
         if len(part.looks) > 1:
@@ -251,12 +262,6 @@ class SurfaceWriter:
             look = body.call(self._functions.of_part(part, Role.LOOK), [q])
             return self._made("painted", sign + field, rank, look)
         return self._made(self._names[id(part.material)], sign + field, rank)
-
-    def _flat(self, ball: Ball, field: str, value: str, sunk: str) -> str:
-        """The rank of what is no distance: how far off it is by its slope. What goes by pieces is sunk by that too."""
-        if sunk != _NOWHERE:
-            value += f" + {sunk} * abs(dot({field}.xyz, d))" if ball.ahead else f" + {sunk}"
-        return f"({value}) / max(length({field}.xyz), {literal(FLATTEST)})"
 
     def _turned(self, part: Part, name: str, stretch: Expr) -> Expr:
         """The gradient in the scene's space: A^T g for the map p -> A p + b to the part's own space."""
@@ -299,6 +304,13 @@ class SurfaceWriter:
     def _name(self) -> str:
         self._count += 1
         return f"s{self._count}"
+
+
+def _flat_rank(ball: Ball, field: str, value: str, sunk: str) -> str:
+    """The rank of what is no distance: how far off it is by its slope. What goes by pieces is sunk by that too."""
+    if sunk != _NOWHERE:
+        value += f" + {sunk} * abs(dot({field}.xyz, d))" if ball.ahead else f" + {sunk}"
+    return f"({value}) / max(length({field}.xyz), {literal(FLATTEST)})"
 
 
 def property_of(material: Material, name: str) -> Expr:

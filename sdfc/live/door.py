@@ -106,7 +106,7 @@ class Door:
         if request.path == LIVE:
             is_ours = _is_one_of(self._origins, request.headers.get_all("Origin"))
             return None if is_ours else _plain(HTTPStatus.FORBIDDEN)
-        name = _FILES.get(request.path)
+        name = _FILES.get(request.path.partition("?")[0])  # what a link may have added is nobody's
         if name is None:
             return _plain(HTTPStatus.NOT_FOUND)
         return _response(HTTPStatus.OK, page.FILES[name], page.content(name))

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
-from sdfc.api.request import View
+from sdfc.api.request import RequestError, View
 
 SMALLEST_SIDE, LARGEST_SIDE = 16, 1920  # pixels of a picture
 _MOST_BRACKETS = 64  # opened in a message: a camera and sixteen params have far fewer
@@ -34,6 +34,8 @@ class Camera:
 
     def view(self) -> View:
         """Raises RequestError for what is no camera."""
+        if (self.fov is None) == (self.height is None):
+            raise RequestError("a camera has either a fov or a height: the other one is null")
         return View(self.eye, self.target, self.up, self.fov, self.height)
 
 

@@ -156,7 +156,7 @@ class Worker:
         try:
             process = self._started()
             outcome = Outcome(process.ask(job, self._patience))
-        except (OSError, ValueError) as error:
+        except Exception as error:  # whatever it is: somebody waits to be told
             self._fails(error)
             return Outcome.LOST
         self._lost = 0

@@ -10,6 +10,7 @@ import { cross, dot, length, minus, plus, times, turned, unit } from "./vector.j
 const STEEPEST = Math.PI / 2 - 1e-3; // a camera that is orbited stays this side of the poles
 const NEAREST = 1e-4; // between eye and target, of the scene's radius
 const FARTHEST = 1e4;
+const SHARP = 12; // digits of a fov, for those near 180deg, and of a height
 
 /**
  * Unit vectors to the right, upward and ahead.
@@ -121,21 +122,30 @@ export function projection(camera, aspect) {
 }
 
 /**
- * As a scene has it.
+ * As a scene has it, with as many digits as keep the picture where it is, to a hundredth of a pixel of a large screen.
  * @param {Camera} camera
  */
 export function textOf(camera) {
-  const decimals = 5 - Math.floor(Math.log10(length(minus(camera.eye, camera.target))));
-  const number = (/** @type {number} */ x) =>
-    String(0 <= decimals && decimals <= 15 ? Number(x.toFixed(decimals)) + 0 : Number(x.toPrecision(7)));
-  const list = (/** @type {Vector} */ v) => `[${v.map(number).join(", ")}]`;
-  const parts = [`eye: ${list(camera.eye)}`, `target: ${list(camera.target)}`];
-  const [x, y, z] = unit(camera.up);
-  if (y < 1 - 1e-9) parts.push(`up: [${[x, y, z].map((c) => Number(c.toFixed(7)) + 0).join(", ")}]`);
-  parts.push(
-    camera.height === null
-      ? `fov: ${Number(((Number(camera.fov) * 180) / Math.PI).toFixed(4))}deg`
-      : `height: ${Number(camera.height.toPrecision(7))}`,
-  );
+  const distance = length(minus(camera.eye, camera.target));
+  const up = unit(camera.up);
+  // the nearer it looks along `up`, the more does a digit roll it
+  const steepness = Math.max(1e-9, length(cross(axesOf(camera).ahead, up)));
+  const whole = 2 * halfOf(camera) * (camera.height === null ? distance : 1);
+  const finest = Math.min(whole, distance * steepness);
+  const parts = [`eye: ${rounded(camera.eye, finest)}`, `target: ${rounded(camera.target, finest)}`];
+  const above = rounded(up, steepness);
+  if (above !== "[0, 1, 0]") parts.push(`up: ${above}`);
+  if (camera.height !== null) parts.push(`height: ${Number(camera.height.toPrecision(SHARP))}`);
+  else parts.push(`fov: ${Number(((Number(camera.fov) * 180) / Math.PI).toPrecision(SHARP))}deg`);
   return `camera { ${parts.join(", ")} }`;
+}
+
+/**
+ * A list whose numbers are off by less than 1e-7 of `size`.
+ * @param {Vector} v
+ * @param {number} size
+ */
+function rounded(v, size) {
+  const decimals = Math.min(100, Math.max(0, 7 - Math.floor(Math.log10(size))));
+  return `[${v.map((x) => Number(x.toFixed(decimals)) + 0).join(", ")}]`;
 }

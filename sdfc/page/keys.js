@@ -2,6 +2,7 @@
 
 /** @typedef {{keys: string[], shown: string, words: string, run: (key: string) => void, shift?: boolean}} Shortcut */
 
+/** The keys of the camera that scroll, choose and select elsewhere. */
 const MOVES = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "Home"];
 
 /**
@@ -12,7 +13,7 @@ export function listen(shortcuts) {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
     const where = /** @type {HTMLElement} */ (event.target);
-    if (where.matches("[type=number]") || (where.matches("input") && MOVES.includes(event.key))) return;
+    if (where.matches("[type=number]") || (MOVES.includes(event.key) && isMovedIn(where))) return;
     const found = shortcuts.find(
       ({ keys, shift }) => keys.includes(event.key) && (shift === undefined || shift === event.shiftKey),
     );
@@ -20,6 +21,19 @@ export function listen(shortcuts) {
     event.preventDefault();
     found.run(event.key);
   });
+}
+
+/**
+ * Whether arrows do something there: in what is chosen by them, can be selected, or lies in what scrolls.
+ * @param {HTMLElement} where
+ */
+function isMovedIn(where) {
+  if (where.matches("input, pre")) return true;
+  /** @type {?HTMLElement} */ let around = where;
+  for (; around && around !== document.body; around = around.parentElement) {
+    if (getComputedStyle(around).overflowY === "auto" && around.scrollHeight > around.clientHeight) return true;
+  }
+  return false;
 }
 
 /**

@@ -43,7 +43,7 @@ function bar(name, marks) {
 function swatches(colors) {
   const list = Object.assign(document.createElement("ul"), { className: "swatches" });
   for (const [color, textContent] of colors) {
-    const item = Object.assign(document.createElement("li"), { textContent });
+    const item = Object.assign(document.createElement("li"), { textContent, title: textContent });
     item.style.setProperty("--color", color);
     list.append(item);
   }

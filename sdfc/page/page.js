@@ -8,7 +8,7 @@ import { explain } from "./legend.js";
 import { Live } from "./live.js";
 import { Painter } from "./painter.js";
 import { Params } from "./params.js";
-import { connection, element, notice, problem, well, write } from "./reports.js";
+import { connection, element, notice, problem, write } from "./reports.js";
 import { alike, Scene } from "./scene.js";
 import { Served } from "./served.js";
 
@@ -25,7 +25,7 @@ class Page {
   /** @type {?Camera} */ #camera = null;
   #view = "picture";
   #painter = new Painter(/** @type {HTMLCanvasElement} */ (element("picture")), {
-    failed: (text) => problem("This browser's GPU does not take the shader", text),
+    troubled: () => this.#warn(),
     changed: (isBusy) => this.#tell(isBusy),
   });
   #bounds = new Bounds(/** @type {HTMLCanvasElement} */ (element("bounds")));
@@ -38,7 +38,10 @@ class Page {
   #live = new Live(`ws://${location.host}/live`, {
     message: (message) => this.#heard(message),
     bytes: (bytes) => void this.#served.take(bytes),
-    connected: connection,
+    connected: (isConnected) => {
+      connection(isConnected);
+      this.#served.connected(isConnected);
+    },
   });
   #served = new Served(
     /** @type {HTMLImageElement} */ (element("served")),
@@ -59,10 +62,7 @@ class Page {
     this.#listen();
     new ResizeObserver(() => this.#resized()).observe(element("view"));
     addEventListener("resize", () => this.#resized()); // also where only the pixels of the device are others
-    if (!this.#painter.isAble) {
-      problem("This browser has no WebGL 2", "The view “Server” shows pictures that sdfc draws itself.");
-      this.#turnTo("server");
-    }
+    if (!this.#painter.isAble) this.#turnTo("server");
   }
 
   /** @param {import("./live.js").Message} message */
@@ -71,7 +71,7 @@ class Page {
       case "scene":
         return this.#take(/** @type {any} */ (message));
       case "values":
-        well();
+        problem("scene", null);
         this.#scene?.follow(/** @type {any} */ (message));
         this.#params.update();
         return this.#changed(false);
@@ -79,12 +79,15 @@ class Page {
         this.#scene?.place(/** @type {any} */ (message));
         return this.#bounds.draw(this.#scene, this.#camera, this.#size);
       case "camera":
-        well();
+        problem("scene", null);
         return this.#goTo(message.camera);
       case "errors":
-        return problem(message.diagnostics.length > 1 ? `${message.diagnostics.length} errors` : "Error", message.text);
+        return problem("scene", {
+          title: message.diagnostics.length > 1 ? `${message.diagnostics.length} errors` : "Error",
+          text: message.text,
+        });
       case "well":
-        return well();
+        return problem("scene", null);
       case "note":
         return write("note", message.text);
       case "picture":
@@ -96,7 +99,7 @@ class Page {
 
   /** @param {import("./scene.js").Told} told */
   #take(told) {
-    well();
+    problem("scene", null);
     const before = this.#scene;
     this.#scene = new Scene(told, before);
     element("waiting").hidden = true;
@@ -108,6 +111,7 @@ class Page {
     this.#params.show(this.#scene);
     explain(element("legend"), this.#view, this.#scene);
     this.#painter.show(this.#scene);
+    this.#warn();
     // who moved the camera stays there, until the text says something else
     if (!before || !alike(before.told.camera, told.camera)) this.#goTo(told.camera);
     else this.#renew();
@@ -164,7 +168,13 @@ class Page {
     this.#served.isOn = view === "server";
     if (this.#scene) explain(element("legend"), view, this.#scene);
     this.#painter.turnTo(/** @type {import("./painter.js").View} */ (view === "server" ? "picture" : view));
+    this.#warn();
     this.#changed(false);
+  }
+
+  /** Say what the browser's GPU cannot do, but where it is not asked to. */
+  #warn() {
+    problem("gpu", this.#view === "server" ? null : this.#painter.trouble);
   }
 
   #toggleBounds() {
@@ -181,11 +191,13 @@ class Page {
 
   async #save() {
     if (!this.#scene) return; // or the first picture would save itself when it comes
-    const blob = this.#served.blob ?? (await this.#painter.saved());
-    if (!blob) return;
+    const isServed = this.#view === "server";
+    const blob = await (isServed ? this.#served.saved() : this.#painter.saved());
+    if (!blob) return notice("There is no picture to save");
+    const view = isServed ? "server" : this.#painter.view; // a painter's is of the view that it draws by then
     const stem = this.#scene.told.title.replace(/\.[^.]*$/, "");
     const link = document.createElement("a");
-    link.download = this.#view === "picture" ? `${stem}.png` : `${stem}-${this.#view}.png`;
+    link.download = view === "picture" ? `${stem}.png` : `${stem}-${view}.png`;
     link.href = URL.createObjectURL(blob);
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
@@ -276,11 +288,16 @@ class Page {
 }
 
 /**
- * @param {"asked" | "shown" | "refused"} state
+ * @param {import("./served.js").State} state
  * @param {string} text
  */
 function served(state, text) {
-  const words = { asked: "sdfc is drawing…", shown: "Drawn by sdfc, not by this browser", refused: text };
+  const words = {
+    asked: "sdfc is drawing…",
+    shown: "Drawn by sdfc, not by this browser",
+    refused: text,
+    lost: "Connection lost: asks again when it is back",
+  };
   if (document.getElementById("served-state")) write("served-state", words[state]);
 }
 

@@ -20,6 +20,15 @@ const VIEWS = Object.freeze({
   materials: { entry: "inspect", shown: 4 },
 });
 
+const UNABLE = Object.freeze({
+  title: "This browser has no WebGL 2",
+  text: "The view “Server” shows pictures that sdfc draws itself.",
+});
+const LOST = Object.freeze({
+  title: "The browser took the GPU away",
+  text: "Waiting until it gives it back; the view “Server” still works.",
+});
+
 /** @typedef {keyof typeof VIEWS} View */
 /** @typedef {{program: Program, entry: string, scene: Scene}} Drawable */
 
@@ -41,12 +50,13 @@ export class Painter {
   #isEmpty = true; // nothing is to be seen yet: anything is better than that
   #movedAt = -Infinity;
   #isAsked = false;
-  /** @type {Map<string, string>} by entry, a text that the driver does not take */ #refused = new Map();
+  /** @type {Map<string, {text: string, complaint: string}>} by entry, what the driver does not take */
+  #refused = new Map();
   /** @type {?{resolve: (blob: ?Blob) => void}} */ #wanted = null;
 
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {{failed: (text: string) => void, changed: (isBusy: boolean) => void}} told
+   * @param {{troubled: () => void, changed: (isBusy: boolean) => void}} told
    */
   constructor(canvas, told) {
     this.#canvas = canvas;
@@ -58,13 +68,41 @@ export class Painter {
       event.preventDefault();
       this.#drawables = [];
       this.#current = this.#film = null;
+      this.#refused.clear();
+      told.troubled();
     });
-    canvas.addEventListener("webglcontextrestored", () => this.#open());
+    canvas.addEventListener("webglcontextrestored", () => {
+      this.#open();
+      told.troubled();
+    });
   }
 
   /** Whether there is WebGL 2 at all. */
   get isAble() {
     return this.#gl !== null;
+  }
+
+  /** The view that it draws. */
+  get view() {
+    return this.#view;
+  }
+
+  /**
+   * Why this view cannot be drawn as the scene is now.
+   * @returns {?import("./reports.js").Trouble}
+   */
+  get trouble() {
+    if (!this.#gl) return UNABLE;
+    if (!this.#film) return LOST;
+    const refused = this.#refused.get(VIEWS[this.#view].entry);
+    if (!refused || refused.text !== this.#shader) return null;
+    return { title: "This browser's GPU does not take the shader", text: refused.complaint };
+  }
+
+  /** The text of the shader that is wanted. */
+  get #shader() {
+    const shaders = /** @type {Record<string, string> | undefined} */ (this.#scene?.told.shaders);
+    return shaders?.[VIEWS[this.#view].entry];
   }
 
   /** Milliseconds for a picture, and its pixels. */
@@ -78,7 +116,6 @@ export class Painter {
    */
   show(scene) {
     this.#scene = scene;
-    this.#refused.clear(); // the page has just taken down what was said of it: a text that is still bad is told again
     for (const drawable of this.#drawables) {
       // the same text is the same shader: an edit of comments, or one that was undone at once
       const shaders = /** @type {Record<string, string>} */ (drawable.scene.told.shaders);
@@ -127,10 +164,11 @@ export class Painter {
   }
 
   /**
-   * The picture as a PNG, once it is all there.
+   * The picture as a PNG, once it is all there; null where there is nothing to draw it with.
    * @returns {Promise<?Blob>}
    */
-  saved() {
+  async saved() {
+    if (!this.#film) return null;
     return new Promise((resolve) => {
       this.#wanted = { resolve };
       this.#ask();
@@ -176,9 +214,9 @@ export class Painter {
    */
   #compile(gl, scene) {
     const { entry } = VIEWS[this.#view];
-    const text = /** @type {Record<string, string>} */ (scene.told.shaders)[entry];
+    const text = this.#shader;
     const isDrawn = this.#current?.scene === scene && this.#current.entry === entry;
-    if (isDrawn || !text || this.#refused.get(entry) === text) return false;
+    if (isDrawn || !text || this.#refused.get(entry)?.text === text) return false;
     let wanted = this.#drawables.find((d) => d.scene === scene && d.entry === entry);
     if (!wanted) {
       wanted = { program: new Program(gl, text), entry, scene };
@@ -187,8 +225,8 @@ export class Painter {
     if (!wanted.program.isDone) return true;
     const complaint = wanted.program.complaint;
     if (complaint) {
-      this.#told.failed(complaint);
-      this.#refused.set(entry, text);
+      this.#refused.set(entry, { text, complaint });
+      this.#told.troubled();
       this.#drop((drawable) => drawable === wanted);
       return false;
     }

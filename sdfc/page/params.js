@@ -111,14 +111,21 @@ export class Params {
     };
     slider.addEventListener("input", () => set(slider.valueAsNumber, true));
     slider.addEventListener("change", () => this.#changed(false));
+    let isTyped = false; // and not yet taken
+    number.addEventListener("input", () => (isTyped = true));
+    number.addEventListener("blur", () => {
+      isTyped = false;
+      this.update();
+    });
     number.addEventListener("change", () => {
+      isTyped = false;
       if (Number.isFinite(number.valueAsNumber)) set(number.valueAsNumber, false);
       else this.update();
     });
     this.#updates.push(() => {
       const value = shown(this.#value(param)[index] * scale);
       if (slider.value !== value) slider.value = value;
-      if (number.value !== value) number.value = value;
+      if (number.value !== value && !isTyped) number.value = value;
       const share = (Number(value) - low) / (high - low);
       slider.style.setProperty("--share", `${100 * Math.min(1, Math.max(0, share))}%`);
     });

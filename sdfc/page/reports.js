@@ -17,20 +17,25 @@ export function write(id, text) {
   if (element(id).textContent !== text) element(id).textContent = text;
 }
 
-/**
- * @param {string} title
- * @param {string} text with its lines and carets
- */
-export function problem(title, text) {
-  const section = element("problem");
-  /** @type {HTMLElement} */ (section.querySelector("h2")).textContent = title;
-  /** @type {HTMLElement} */ (section.querySelector("pre")).textContent = text;
-  section.hidden = false;
-}
+/** What can be wrong at a time, each for as long as it is: the scene, the browser's GPU. The first is shown.
+ * @typedef {"scene" | "gpu"} Kind */
 
-/** Nothing is wrong any more. */
-export function well() {
-  element("problem").hidden = true;
+/** A text has its lines and carets. @typedef {{title: string, text: string}} Trouble */
+
+/** @type {Record<Kind, ?Trouble>} */
+const troubles = { scene: null, gpu: null };
+
+/**
+ * @param {Kind} kind
+ * @param {?Trouble} trouble null where nothing is wrong any more
+ */
+export function problem(kind, trouble) {
+  troubles[kind] = trouble;
+  const shown = troubles.scene ?? troubles.gpu;
+  element("problem").hidden = shown === null;
+  if (!shown) return;
+  write("problem-title", shown.title);
+  write("problem-text", shown.text);
 }
 
 /** @param {boolean} isConnected */

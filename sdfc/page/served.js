@@ -7,6 +7,8 @@ const RESTED = 150; // milliseconds without a change until the server is asked
 const LARGEST = 1920; // pixels that it draws, on either side
 const SMALLEST = 16;
 
+/** @typedef {"asked" | "shown" | "refused" | "lost"} State */
+
 export class Served {
   #image;
   #send;
@@ -14,13 +16,16 @@ export class Served {
   #request = 0; // the newest
   #announced = 0; // whose bytes come next
   /** @type {number | undefined} */ #timer;
+  /** @type {?Order} */ #order = null;
   /** @type {?Blob} */ #blob = null;
+  /** @type {((blob: ?Blob) => void)[]} who waits for the picture */ #waiting = [];
+  #isAwaited = false; // asked for, or about to be
   isOn = false;
 
   /**
    * @param {HTMLImageElement} image over the picture
    * @param {(message: import("./live.js").Message) => boolean} send
-   * @param {(state: "asked" | "shown" | "refused", text: string) => void} told
+   * @param {(state: State, text: string) => void} told
    */
   constructor(image, send, told) {
     this.#image = image;
@@ -28,25 +33,57 @@ export class Served {
     this.#told = told;
   }
 
-  /** The server's picture that is shown now. */
-  get blob() {
-    return this.#image.hidden ? null : this.#blob;
+  /**
+   * The server's picture, once it is there; null where none comes.
+   * @returns {Promise<?Blob>}
+   */
+  async saved() {
+    if (!this.#image.hidden) return this.#blob;
+    if (!this.#isAwaited) return null;
+    return new Promise((resolve) => this.#waiting.push(resolve));
   }
 
   /**
    * What is shown has changed, or the view has.
-   * @param {?Order} order
+   * @param {Order} order
    */
   want(order) {
     clearTimeout(this.#timer);
     this.#request += 1; // what is under way has become stale
     this.#image.hidden = true;
-    if (!this.isOn || !order) return;
+    this.#order = order;
+    if (!this.isOn) return this.#settle(null);
     this.#told("asked", "");
+    this.#isAwaited = true;
     this.#timer = setTimeout(() => {
       const { camera, params } = order;
-      this.#send({ type: "draw", request: this.#request, camera, params, size: bounded(order.size) });
+      if (!this.#send({ type: "draw", request: this.#request, camera, params, size: bounded(order.size) })) this.#lose();
     }, RESTED);
+  }
+
+  /**
+   * What is awaited does not come without a connection; with the next one it is asked for again.
+   * @param {boolean} isConnected
+   */
+  connected(isConnected) {
+    if (!this.isOn || !this.#image.hidden || !this.#order) return;
+    if (isConnected) this.want(this.#order);
+    else this.#lose();
+  }
+
+  #lose() {
+    clearTimeout(this.#timer);
+    this.#told("lost", "");
+    this.#settle(null);
+  }
+
+  /**
+   * Nothing is awaited any more.
+   * @param {?Blob} blob
+   */
+  #settle(blob) {
+    this.#isAwaited = false;
+    for (const resolve of this.#waiting.splice(0)) resolve(blob);
   }
 
   /**
@@ -62,7 +99,9 @@ export class Served {
    * @param {string} text
    */
   refused(request, text) {
-    if (request === this.#request) this.#told("refused", text);
+    if (request !== this.#request) return;
+    this.#told("refused", text);
+    this.#settle(null);
   }
 
   /** @param {Blob} bytes */
@@ -82,6 +121,7 @@ export class Served {
     if (request !== this.#request || !this.isOn) return;
     this.#image.hidden = false;
     this.#told("shown", "");
+    this.#settle(this.#blob);
   }
 }
 

@@ -66,6 +66,14 @@ def test_the_files_of_the_table_are_served_with_what_keeps_a_page_safe(port: int
         assert headers["cross-origin-opener-policy"] == "same-origin"
 
 
+@pytest.mark.parametrize("query", ["?", "?x=1", "?/../secret", "?a?b"])
+def test_what_a_link_adds_to_a_name_is_ignored(port: int, query: str) -> None:
+    for path, name in [("/", "index.html"), ("/page.css", "page.css")]:
+        status, _, body = reply(port, head(port, path + query))
+        assert (status, body) == (200, page.content(name))
+    assert reply(port, head(port, f"/secret{query}"))[0] == 404
+
+
 @pytest.mark.parametrize(
     "path",
     [
@@ -78,7 +86,6 @@ def test_the_files_of_the_table_are_served_with_what_keeps_a_page_safe(port: int
         "/./index.html",
         "/index.html%00",
         "/INDEX.HTML",
-        "/?page",
         "*",
         "index.html",
         "http://127.0.0.1/index.html",

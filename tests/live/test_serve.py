@@ -301,6 +301,8 @@ def test_the_newest_wish_of_each_page_is_drawn_once(opengl: None, host: Host, vi
         ({"camera": {"eye": [0, 0, 0]}}, "are the same point"),
         ({"camera": {"up": [0, 0, 0]}}, "up direction is zero"),
         ({"camera": {"fov": None, "height": 0}}, "height must be above zero"),
+        ({"camera": {"fov": None, "height": None}}, "either a fov or a height"),
+        ({"camera": {"fov": 0.6, "height": 2}}, "either a fov or a height"),
     ],
 )
 def test_what_the_scene_does_not_have_is_refused_and_the_page_stays(

@@ -89,6 +89,12 @@ class Actor:
         for connection in self._pages:
             connection.send(json.dumps(message))
 
+    def show(self, request: int, picture: bytes) -> None:
+        """The answer to a page that asked for a picture."""
+        self.say({"type": "picture", "request": request})
+        for connection in self._pages:
+            connection.send(picture)
+
     def close(self) -> None:
         for connection in self._pages:
             connection.close()

@@ -151,6 +151,59 @@ def test_a_copied_camera_is_the_same_in_the_language(module: Tab) -> None:
             assert found.height is not None and math.isclose(found.height.number, camera["height"], rel_tol=1e-6)
 
 
+def sharp_cameras() -> list[dict[str, Any]]:
+    """Zoomed in from afar, almost flat, almost all around, almost along `up`, hardly rolled."""
+    made = []
+    rng = np.random.default_rng(7)
+    for tilt in (1.0, 1e-3):
+        for turn in rng.uniform(0, 2 * math.pi, 3):
+            toward = np.array([math.sin(tilt) * math.sin(turn), math.cos(tilt), math.sin(tilt) * math.cos(turn)])
+            target = rng.normal(size=3)
+            for distance, roll in ((1e3, 0.0), (4.0, 3e-5), (0.02, 0.0)):
+                place = {
+                    "eye": (target + distance * toward).tolist(),
+                    "target": target.tolist(),
+                    "up": [roll, 1.0, 0.0],
+                }
+                made += [{**place, "fov": fov, "height": None} for fov in (math.radians(1e-5), 0.6, 3.1)]
+                made += [{**place, "fov": None, "height": height} for height in (1e-4, 2.0, 50.0)]
+    return made
+
+
+def pixels(camera: dict[str, Any], at: np.ndarray[Any, Any], rows: int = 2160) -> np.ndarray[Any, Any]:
+    """(n, 2): where points are, (n, 3) in heights of the picture at the target and along `eye` to `target`."""
+    eye, target = np.array(camera["eye"]), np.array(camera["target"])
+    ahead = (target - eye) / np.linalg.norm(target - eye)
+    right = np.cross(ahead, camera["up"])
+    right /= np.linalg.norm(right)
+    offset = at - eye
+    depth = offset @ ahead if camera["height"] is None else np.ones(len(at))
+    whole = 2.0 * math.tan(0.5 * camera["fov"]) if camera["height"] is None else camera["height"]
+    return rows * np.stack([offset @ right, offset @ np.cross(right, ahead)], axis=-1) / (depth * whole)[:, None]
+
+
+def test_a_copied_camera_shows_the_same_to_a_hundredth_of_a_pixel(module: Tab) -> None:
+    known = sharp_cameras()
+    rng = np.random.default_rng(8)
+    for camera, text in zip(known, called(module, "a[0].map(c => m.textOf(c))", known), strict=True):
+        found = load(Source("copied.sdf", f"{text}\nscene {{ sphere(radius: 1) }}"), Path()).camera
+        assert found is not None, text
+        pasted = {name: getattr(found, name).numbers for name in ("eye", "target", "up")}
+        pasted["fov"] = None if camera["fov"] is None else found.fov.number
+        pasted["height"] = None if found.height is None else found.height.number
+        assert (pasted["height"] is None) == (camera["height"] is None)
+        distance = math.dist(camera["eye"], camera["target"])
+        whole = camera["height"] or 2.0 * math.tan(0.5 * camera["fov"]) * distance
+        at = camera["target"] + 0.3 * min(whole, distance) * rng.uniform(-1, 1, (20, 3))
+        off = np.abs(pixels(camera, at) - pixels(pasted, at)).max()
+        assert off < 0.01, (off, camera, text)
+
+
+def test_a_copied_camera_has_the_authors_own_numbers(module: Tab) -> None:
+    camera = {"eye": [2, 1.6, 3], "target": [0.1, 0, 0], "up": [0, 1, 0], "fov": math.radians(34), "height": None}
+    assert called(module, "m.textOf(a[0])", camera) == "camera { eye: [2, 1.6, 3], target: [0.1, 0, 0], fov: 34deg }"
+
+
 def test_colours_come_back(module: Tab) -> None:
     shown = ["#000000", "#ffffff", "#c8452f", "#0a0b0c", "#7f8081"]
     back = module.run(f"import('/colour.js').then(m => {json.dumps(shown)}.map(h => m.hexOf(m.linearOf(h))))")

@@ -1,4 +1,4 @@
-"""Law: however little a field says of distances, hits beside it, of it and where it is cut are where they are proved."""
+"""Law: however little a field says of distances, hits of it, beside it and where it is cut are where it is proved."""
 
 from __future__ import annotations
 

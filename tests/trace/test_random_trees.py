@@ -1,7 +1,7 @@
 """Law: whatever is built of whatever, every tracer agrees with what is proved, and every fact with what is sampled.
 
-A short run grows 500 trees for each law and traces each by `proven` and one other tracer. SDFC_TREE_EXAMPLES=1000 grows
-so many others, and traces each by every tracer.
+A short run holds 500 trees against samples, and traces 200 by `proven` and one other tracer. SDFC_TREE_EXAMPLES=1000
+grows so many others for each law, and traces each by every tracer.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ from sdfc.tracers import TRACERS
 Array = NDArray[np.float64]
 
 MANY = os.environ.get("SDFC_TREE_EXAMPLES")
-SIZE = (12, 7)
+SIZE = (8, 5)
 OTHERS = tuple(name for name in TRACERS if name != "proven")
 BATCHES = range(10)
-TREES = 500 // len(BATCHES)  # a batch
+SAMPLED, TRACED = 500 // len(BATCHES), 200 // len(BATCHES)  # a batch
 
 
-def grown(batch: int, law: Callable[..., None]) -> None:
+def grown(batch: int, trees: int, law: Callable[..., None]) -> None:
     """The law held against a batch of trees: always the same ones in a short run."""
     forest = settings(
-        max_examples=int(MANY) // len(BATCHES) if MANY else TREES,
+        max_examples=int(MANY) // len(BATCHES) if MANY else trees,
         deadline=None,
         database=None,
         phases=(Phase.explicit, Phase.generate, *((Phase.shrink,) if MANY else ())),
@@ -74,7 +74,7 @@ def test_random_scenes(batch: int, tracing: Tracing) -> None:
         note(text)
         check(text, view, tracing, ("proven", *OTHERS) if MANY else ("proven", other))
 
-    grown(batch, law)
+    grown(batch, TRACED, law)
 
 
 @pytest.mark.gpu
@@ -101,7 +101,8 @@ def test_many_and_cut(tracing: Tracing) -> None:
 
 @pytest.mark.parametrize("batch", BATCHES)
 def test_what_was_proved_holds_where_it_is_sampled(batch: int) -> None:
-    grown(batch, given(text=scenes(), dice=st.integers(0, 2**31).map(np.random.default_rng))(holds_where_it_is_sampled))
+    law = given(text=scenes(), dice=st.integers(0, 2**31).map(np.random.default_rng))(holds_where_it_is_sampled)
+    grown(batch, SAMPLED, law)
 
 
 def holds_where_it_is_sampled(text: str, dice: np.random.Generator) -> None:
@@ -137,13 +138,13 @@ def assert_facts(compiled: Compiled, leaf: Leaf, a: Array, b: Array) -> None:
     """What the leaf's step rests on, between pairs of points (3, n) of where it holds."""
     part = leaf.part
     f_a, f_b, f_half = (_values(compiled, part, p) for p in (a, b, 0.5 * (a + b)))
-    lo, hi = (np.array(end)[:, None] for end in (part.box.lo, part.box.hi))
-    outside = ((a < lo - 1e-6) | (a > hi + 1e-6)).any(axis=0)
-    assert not (outside & (f_a < 0.0)).any(), f"{part.name} reaches out of its box"
+    assert not (_is_outside(part, a) & (f_a < 0.0)).any(), f"{part.name} reaches out of its box"
     match leaf:
         case Ball() | Blend():
             steep = np.abs(f_a - f_b) - leaf.lipschitz * np.linalg.norm(a - b, axis=0)
-            assert steep.max() < 1e-9, f"{part.name} is steeper than {leaf.lipschitz}"
+            # what is cut away is stepped out of from within: its constant is asked for in its box alone
+            steep = steep[~(_is_outside(part, a) | _is_outside(part, b))] if _is_cut_away(leaf) else steep
+            assert steep.max(initial=0.0) < 1e-9, f"{part.name} is steeper than {leaf.lipschitz}"
         case Tangent() | Chord():
             assert (f_half - 0.5 * (f_a + f_b)).max() < 1e-9, f"{part.name} is not convex"
         case Closed():
@@ -161,6 +162,20 @@ def _regions(step: Step, region: Box) -> list[tuple[Leaf, Box]]:
             return [(member, region) for member in step.members]
         case _:
             return [(step, region)]
+
+
+def _is_outside(part: Part, p: Array) -> NDArray[np.bool_]:
+    lo, hi = (np.array(end)[:, None] for end in (part.box.lo, part.box.hi))
+    outside: NDArray[np.bool_] = ((p < lo - 1e-6) | (p > hi + 1e-6)).any(axis=0)
+    return outside
+
+
+def _is_cut_away(leaf: Leaf) -> bool:
+    match leaf:
+        case Ball(inside=inside):
+            return not inside
+        case _:
+            return False
 
 
 def _values(compiled: Compiled, part: Part, p: Array) -> Array:
