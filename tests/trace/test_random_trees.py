@@ -1,7 +1,7 @@
 """Law: whatever is built of whatever, every tracer agrees with what is proved, and every fact with what is sampled.
 
-A short run grows 500 trees for each law, and traces each by `proven` and one other tracer. SDFC_TREE_EXAMPLES=1000
-grows so many others, and traces each by every tracer.
+A short run holds 500 trees against samples, and traces 200 by `proven` and one other tracer. SDFC_TREE_EXAMPLES=1000
+grows so many others for each law, and traces each by every tracer.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ MANY = os.environ.get("SDFC_TREE_EXAMPLES")
 SIZE = (8, 5)
 OTHERS = tuple(name for name in TRACERS if name != "proven")
 BATCHES = range(10)
-TREES = 500 // len(BATCHES)  # a batch
+SAMPLED, TRACED = 500 // len(BATCHES), 200 // len(BATCHES)  # a batch
 
 
-def grown(batch: int, law: Callable[..., None]) -> None:
+def grown(batch: int, trees: int, law: Callable[..., None]) -> None:
     """The law held against a batch of trees: always the same ones in a short run."""
     forest = settings(
-        max_examples=int(MANY) // len(BATCHES) if MANY else TREES,
+        max_examples=int(MANY) // len(BATCHES) if MANY else trees,
         deadline=None,
         database=None,
         phases=(Phase.explicit, Phase.generate, *((Phase.shrink,) if MANY else ())),
@@ -74,7 +74,7 @@ def test_random_scenes(batch: int, tracing: Tracing) -> None:
         note(text)
         check(text, view, tracing, ("proven", *OTHERS) if MANY else ("proven", other))
 
-    grown(batch, law)
+    grown(batch, TRACED, law)
 
 
 @pytest.mark.gpu
@@ -102,7 +102,7 @@ def test_many_and_cut(tracing: Tracing) -> None:
 @pytest.mark.parametrize("batch", BATCHES)
 def test_what_was_proved_holds_where_it_is_sampled(batch: int) -> None:
     law = given(text=scenes(), dice=st.integers(0, 2**31).map(np.random.default_rng))(holds_where_it_is_sampled)
-    grown(batch, law)
+    grown(batch, SAMPLED, law)
 
 
 def holds_where_it_is_sampled(text: str, dice: np.random.Generator) -> None:
