@@ -51,9 +51,9 @@ _TEMPLATES = """
 BEYOND BOX_HIGH BOX_LOW Bracket CENTRE CUT EYE FAR Found GROW HALF_VIEW MANY_STEPS MOST_CONE_STEPS MOST_STEPS Nearest
 Properties RADIUS State Surface TARGET TILE UP VERTICAL ambient axis_x axis_y axis_z ball blended blended_of both
 box_distance box_distance_span box_interval bracket camera_ray chord chord_reach clearance cleared clip_from_scene
-color_out cone depth_row direction_out distinct encode_srgb enter entry evaluations events eye far_outside far_point
-farther farther_of first_out gone gradient haste heat iMouse iResolution iTime inside leave light_at line_root look
-look_up_tile mainImage map map_span march material meeting narrowed near_point nearer nearer_of nearest normal_out
+color_out cone depth_row direction_out distinct drawn encode_srgb enter entry evaluations events eye far_outside
+far_point farther farther_of first_out gone gradient haste heat iMouse iResolution iTime inside leave light_at line_root
+look look_up_tile mainImage map map_span march material meeting narrowed near_point nearer nearer_of nearest normal_out
 occlusion_weight openness openness_map origin_out own own_tolerance painted_as parabola picture piece pixel
 pixel_centre point_falloff position_out prepare properties radiance radiance_out ray_ahead ray_cone ray_origin rebase
 reflect_light rounding scene_from_clip sdf shown sky sky_radiance slab_interval span_complement span_hull

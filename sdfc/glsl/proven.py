@@ -11,6 +11,7 @@ from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.glsl.blend import BlendWriter
 from sdfc.glsl.body import Body, own_direction, own_point
 from sdfc.glsl.boxes import declare_box, declare_within
+from sdfc.glsl.drawn import declare_across, drawn_next
 from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
@@ -206,6 +207,8 @@ class ProvenWriter:
                     self._boxes(body, child)
             case Ball() if step.ahead:
                 body.once(f"float {step.ahead} = FAR;")
+            case Ball() if step.drawn is not None:
+                declare_across(self._graph, body, step)
             case Closed() | Many() | Tangent() | Ball() | Blend():
                 pass
             case _:
@@ -371,8 +374,11 @@ class ProvenWriter:
         if not (scale.is_constant and scale.number == 1.0):
             value = f"{body.text(scale)} * {value}"
         eps = "fine" if scope.cut else "eps"
+        sunk = "sunk + " if scope.cut else ""
+        if step.drawn is not None:
+            return drawn_next(body, step, step.drawn, q, f"{sunk}{value}", eps)
         if step.inside:
-            return f"ball(t, {'sunk + ' if scope.cut else ''}{value}, {eps})"
+            return f"ball(t, {sunk}{value}, {eps})"
         return f"ball(t, 3.0 * {eps} - {value}, {eps})"
 
     def _function(self, head: str, body: Body, doc: str) -> None:

@@ -84,6 +84,8 @@ def _balls(step: Ball) -> str:
     if not math.isfinite(step.lipschitz):
         return f"bounds of its slope over the piece of the ray ahead{why}"
     balls = f"Lipschitz balls, constant {step.lipschitz:.4g}"
+    if step.drawn is not None:
+        return f"{balls}, stretched along the walls of what is drawn out{why}"
     if step.ahead:
         return f"{balls}, and bounds of its slope over the piece of the ray ahead{why}"
     if step.bend is None:

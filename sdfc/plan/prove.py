@@ -15,6 +15,7 @@ from sdfc.facts.exactness import exactness
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.rule import Rule, Rules
 from sdfc.field.graph import FieldGraph
+from sdfc.plan.drawn import drawn
 from sdfc.plan.gather import gathered
 from sdfc.plan.steps import (
     All,
@@ -218,7 +219,8 @@ class Prover:
     def _ruled(self, part: Part, lipschitz: float, leaf: Leaf, rule: Rule) -> Ball:
         self._pieces += rule.by_pieces
         ahead = f"ahead_{self._pieces}" if rule.by_pieces else ""
-        return Ball(part, lipschitz, leaf.inside, rule.bend, ahead, rule.why, rule.is_core)
+        along = drawn(leaf.shape) if leaf.inside and rule.bend is None and not ahead else None
+        return Ball(part, lipschitz, leaf.inside, rule.bend, ahead, rule.why, rule.is_core, along)
 
     def _within(self, box: Box, step: Step, needed: bool) -> Within:
         self._boxes += 1

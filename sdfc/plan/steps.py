@@ -84,6 +84,9 @@ class Ball:
     With `bend`, also the parabola below it: along a line of unit speed in the part's own space its core (facts/bend.py)
     falls no faster than f + f' x - bend x x / 2. With `ahead`, also bounds of its value and slope over the piece of the
     ray ahead: so is named how long that is, which the ray remembers. Then the constant may be infinite: no ball.
+
+    `drawn`: nearer to z = 0 of the part's own space than so, the field outside is a profile's (sdfc/plan/drawn): it
+    comes down only as a ray goes across z, and along its walls the ball is stretched.
     """
 
     part: Part
@@ -93,6 +96,7 @@ class Ball:
     ahead: str = ""
     why: str = ""  # this rule: what rays that were tried took by each
     is_core: bool = False  # the field is its own core: the constant times as much as the radius of the ball
+    drawn: Expr | None = None
 
     @property
     def scale(self) -> float:

@@ -129,6 +129,12 @@ class Formulas:
         (value,) = self._evaluate("value", own.owner, lambda: [self._formula(part, own)], inputs, own.arguments)
         return np.broadcast_to(value, p.shape[1:]) * own.stretch
 
+    def across(self, part: Part, half: Expr, p: Array, d: Array) -> tuple[Array, Array]:
+        """How far points are beyond `half` along the part's own z, and how fast d goes across it, (n,) each."""
+        own = self._own(part)
+        x, y, _ = own.direction(d)
+        return (np.abs(own.point(p)[2]) - self.constant(half)[0]) * own.stretch, np.hypot(x, y) * own.stretch
+
     def slope(self, part: Part, p: Array, d: Array) -> tuple[Array, Array]:
         """A convex function of the part and its derivative along d, (n,) each."""
         own = self._own(part)

@@ -279,7 +279,11 @@ class StepTracer:
             radius = 3.0 * near - radius
         elif cut:
             radius = radius + 3.0 * near
-        return np.where(radius <= near, here.t, here.t + radius * SHY)
+        clear = radius
+        if step.drawn is not None:
+            beside, across = self._formulas.across(step.part, step.drawn, here.rays.at(here.t), here.rays.d)
+            clear = np.where(beside * step.scale < -4.0 * near, radius / (across + 1e-12), radius)
+        return np.where(radius <= near, here.t, here.t + clear * SHY)
 
     def _parabola(self, step: Ball, known: Expr, here: _Place, cut: bool, near: Array) -> Array:
         """To the root of the parabola below the field's core, or by the empty ball where that is more."""

@@ -13,6 +13,13 @@ float line_root(vec2 v, float level) { return v.y < 0.0 ? min(max(v.x - level, 0
 // nothing is nearer than r
 float ball(float t, float r, float eps) { return r <= eps ? t : t + r * 0.9999996; }
 
+// Between the ends (`beside` < 0) the field comes down by no more than the ray goes across its walls. At an end it need
+// not: what is sunk there, by less than 4 eps, would be passed.
+float drawn(float t, float r, float beside, float across, float eps) {
+    float clear = beside < -4.0 * eps ? r / (across + 1e-6) : r;
+    return r <= eps ? t : t + clear * 0.9999996;
+}
+
 // Nothing is nearer than r; v: what has the field's sign, and its slope along the ray, and bends down by no more than
 // `bend`. It is there when both are as near as eps: a field may be far flatter than its Lipschitz constant says.
 float parabola(float t, float r, vec2 v, float bend, float eps) {
