@@ -25,6 +25,11 @@ def exactness(root: Shape) -> dict[int, Exactness]:
     return found
 
 
+def is_no_distance(shape: Shape) -> bool:
+    """Whether nothing is known of how far off the surface is where the field has some value: it may be flat."""
+    return exactness(shape)[shape.id] is Exactness.NONE
+
+
 def _class(shape: Shape, found: dict[int, Exactness]) -> Exactness:
     match shape:
         case Apply():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,21 +36,36 @@ def watch(scene: Path, kind: Kind | None, session: Session) -> Iterator[Update |
     with Saves(session.bell) as saves:
         paths = _watched(saves, scene, seen, ())
         stamp = _stamp(paths)
-        yield from _told(scene, kind, session, seen)
+        is_owed = yield from _answered(_told(scene, kind, session, seen))
         is_busy = False
         while True:
             happened = saves.wait(0.0 if is_busy else _LOOK)
             if not happened and _stamp(paths) == stamp:
-                yield from _gone_on(session)
+                is_owed = (yield from _answered(_gone_on(session))) or is_owed
                 is_busy = session.answer()  # one picture at a time: a save comes first
                 continue
-            stamp = _stamp(paths)  # before the look: what is saved during it is seen by the next one
+            before, stamp = stamp, _stamp(paths)  # before the look: what is saved during it is seen by the next one
             now = _settled(scene, kind, _looked(scene, kind))
             paths = _watched(saves, scene, now, paths)
-            if _is_same(seen, now):
+            if _is_same(seen, now) and not (is_owed and stamp != before):
                 continue
             seen = now
-            yield from _told(scene, kind, session, seen)
+            is_owed = yield from _answered(_told(scene, kind, session, seen))
+
+
+def _answered(updates: Iterator[Update | Failure]) -> Generator[Update | Failure, None, bool]:
+    """The updates; returns whether a picture is owed through no fault of the scene: its text saved again is tried."""
+    is_owed = False
+    for told in updates:
+        yield told
+        match told:
+            case Failure(error=SceneError() | RequestError()):
+                pass
+            case Failure():
+                is_owed = True
+            case _:
+                pass
+    return is_owed
 
 
 def first_look(scene: Path, kind: Kind | None) -> Snapshot | Exception:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import assert_never
 
 from sdfc.facts.cost import cost
-from sdfc.facts.exactness import exactness
+from sdfc.facts.exactness import is_no_distance
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.plan.cluster import CLUSTER
 from sdfc.plan.plan import FINE, Plan
@@ -29,8 +29,7 @@ from sdfc.plan.steps import (
     is_closed,
     leaves_of,
 )
-from sdfc.shape.definition import Exactness, Kind
-from sdfc.shape.graph import Shape
+from sdfc.shape.definition import Kind
 from sdfc.shape.lower import Lowering, lower_ray
 from sdfc.tracers import TRACERS
 
@@ -132,18 +131,13 @@ def _objection(name: str, plan: Plan) -> str:
     unbounded = [leaf.part.name for leaf in leaves_of(plan.root) if not math.isfinite(plan.slopes[id(leaf.part)])]
     if unbounded:
         return f"no Lipschitz constant is known for {', '.join(unbounded[:3])}"
-    flat = [leaf.part.name for leaf in leaves_of(plan.root) if _is_no_distance(leaf.part.shape)]
+    flat = [leaf.part.name for leaf in leaves_of(plan.root) if is_no_distance(leaf.part.shape)]
     if flat:
         return f"the value of {', '.join(flat[:3])} over its Lipschitz constant does not tell how near it is"
     families: dict[str, list[str]] = {}
     for family, why in TRACERS[name].weak.items():
         families.setdefault(why, []).append(family)
     return "; ".join(f"may fail at {', '.join(some)}: {why}" for why, some in families.items())
-
-
-def _is_no_distance(shape: Shape) -> bool:
-    """Whether its formula may be much flatter at its surface than its constant allows elsewhere."""
-    return exactness(shape)[shape.id] is Exactness.NONE
 
 
 def _classic() -> float:

@@ -11,7 +11,7 @@ from sdfc.diagnostics import SceneError, scene_error
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box, everything
 from sdfc.facts.curvature import convex_shapes
-from sdfc.facts.exactness import exactness
+from sdfc.facts.exactness import is_no_distance
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.rule import Rule, Rules
 from sdfc.field.graph import FieldGraph
@@ -33,7 +33,6 @@ from sdfc.plan.steps import (
     Tangent,
     Within,
 )
-from sdfc.shape.definition import Exactness
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, topological
 from sdfc.shape.lower import lower_ray
 from sdfc.shape.material import Material
@@ -324,7 +323,7 @@ def _is_bare(shape: Shape, painted: set[int]) -> bool:
 def _is_near_distance(shape: Apply) -> bool:
     """Whether a value of the field tells how near the surface is: a formula of an author's may be flat there."""
     own = all(node.definition.is_standard for node in topological(shape) if isinstance(node, Apply))
-    return own or exactness(shape)[shape.id] is not Exactness.NONE
+    return own or not is_no_distance(shape)
 
 
 def _is_by_pieces(step: Step) -> bool:

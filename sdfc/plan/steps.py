@@ -13,7 +13,7 @@ from typing import TypeAlias, assert_never
 
 from sdfc.diagnostics import Span
 from sdfc.facts.box import Box
-from sdfc.facts.exactness import exactness
+from sdfc.facts.exactness import exactness, is_no_distance
 from sdfc.field.graph import Expr
 from sdfc.shape.definition import Exactness
 from sdfc.shape.graph import Apply
@@ -105,8 +105,8 @@ class Ball:
 
     @property
     def is_no_distance(self) -> bool:
-        """Whether nothing is known of how far off the surface is where the field has some value: it may be flat."""
-        return exactness(self.part.shape)[self.part.shape.id] is Exactness.NONE
+        """Whether its values say nothing of how near the surface is."""
+        return is_no_distance(self.part.shape)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -217,7 +217,7 @@ def may_have_seams(step: Step) -> bool:
         case All():
             return not is_closed(step) or any(may_have_seams(s) for s in step.steps)
         case Any():
-            return any(_is_cut(s) or _is_no_distance(s) or may_have_seams(s) for s in step.steps)
+            return any(_is_cut(s) or _has_no_distance(s) or may_have_seams(s) for s in step.steps)
         case Within():
             return may_have_seams(step.step)
         case Closed() | Many() | Tangent() | Chord() | Ball() | Blend():
@@ -236,12 +236,12 @@ def _is_cut(step: Step) -> bool:
             return False
 
 
-def _is_no_distance(step: Step) -> bool:
+def _has_no_distance(step: Step) -> bool:
     match step:
         case Ball():
             return step.is_no_distance
         case Within():
-            return _is_no_distance(step.step)
+            return _has_no_distance(step.step)
         case _:
             return False
 

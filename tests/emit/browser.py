@@ -6,7 +6,6 @@ import itertools
 import json
 import os
 import queue
-import shutil
 import subprocess
 import tempfile
 import threading
@@ -18,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from chromium import FLAGS, chromium
 from emitting import ROOT
 
 PATIENCE = 90.0  # seconds for a picture, its compiles by a software renderer included
@@ -94,16 +94,6 @@ void main() {{
 """
 
 
-def chromium() -> str:
-    """The browser. Without it the test is skipped, unless SDFC_REQUIRE_GL=1."""
-    path = shutil.which("chromium")
-    if path is None:
-        if os.environ.get("SDFC_REQUIRE_GL") == "1":
-            pytest.fail("SDFC_REQUIRE_GL=1, but chromium is not installed")
-        pytest.skip("chromium is not installed")
-    return path
-
-
 def require_three() -> None:
     """three.js is under the repository, as npm installs it. Likewise."""
     if not (_NODE / "three").exists():
@@ -157,12 +147,11 @@ class Browser:
     def _start(self) -> None:
         if self._process is not None:
             return
-        # ANGLE on Mesa: SwiftShader compiles large shaders for minutes
-        flags = ["--headless", "--no-sandbox", "--disable-dev-shm-usage", "--use-gl=angle", "--use-angle=gl-egl"]
-        flags += ["--ignore-gpu-blocklist", "--no-first-run", f"--user-data-dir={self._profile.name}"]
         page = f"http://127.0.0.1:{self._server.server_port}/"
         self._process = subprocess.Popen(
-            [chromium(), *flags, page], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            [chromium(), *FLAGS, f"--user-data-dir={self._profile.name}", page],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
         )
 
     def _stop(self) -> None:

@@ -56,6 +56,20 @@ def moved_away_first(path: Path, text: str) -> None:
     backup.unlink()
 
 
+def test_the_same_text_saved_again_gets_the_picture_that_could_not_be_written(watching: Watching) -> None:
+    watching.hears("new shader: ")
+    picture = watching.folder / "o.png"
+    picture.unlink()
+    picture.mkdir()  # in whose place no file can be put
+    scene = watching.folder / "s.sdf"
+    scene.write_text(SCENE.replace("0.5", "0.6"))
+    watching.hears("the last picture stays")
+    picture.rmdir()
+    scene.write_text(SCENE.replace("0.5", "0.6"))
+    watching.hears("1 live number")
+    assert watching.picture().startswith(b"\x89PNG")
+
+
 SAVES = [in_place, renamed_over, moved_away_first]
 
 

@@ -6,8 +6,6 @@ import base64
 import io
 import itertools
 import json
-import os
-import shutil
 import subprocess
 import tempfile
 import time
@@ -17,35 +15,14 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
-import pytest
+from chromium import FLAGS, chromium
 from PIL import Image
 from websockets.sync.client import connect
 
 PATIENCE = 30.0  # seconds for anything that a page does
 
-_FLAGS = (
-    "--headless",
-    "--no-sandbox",
-    "--disable-dev-shm-usage",
-    # ANGLE on Mesa: SwiftShader compiles large shaders for minutes
-    "--use-gl=angle",
-    "--use-angle=gl-egl",
-    "--ignore-gpu-blocklist",
-    "--no-first-run",
-    "--remote-debugging-port=0",
-)
 _CODES = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Home": 36, "Tab": 9, "Enter": 13}
 _SHIFT = 8
-
-
-def chromium() -> str:
-    """The browser. Without it the test is skipped, unless SDFC_REQUIRE_GL=1."""
-    path = shutil.which("chromium")
-    if path is None:
-        if os.environ.get("SDFC_REQUIRE_GL") == "1":
-            pytest.fail("SDFC_REQUIRE_GL=1, but chromium is not installed")
-        pytest.skip("chromium is not installed")
-    return path
 
 
 def until(what: Callable[[], Any], words: str) -> Any:
@@ -70,7 +47,7 @@ class Browser:
     def __init__(self) -> None:
         self._profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         folder = Path(self._profile.name)
-        command = [chromium(), *_FLAGS, f"--user-data-dir={folder}", "about:blank"]
+        command = [chromium(), *FLAGS, "--remote-debugging-port=0", f"--user-data-dir={folder}", "about:blank"]
         self._process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         told = folder / "DevToolsActivePort"
         until(lambda: told.exists() and told.read_text().count("\n") == 1, "the browser")
