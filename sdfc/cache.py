@@ -7,7 +7,6 @@ import hashlib
 import json
 import os
 import sys
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +19,9 @@ def folder() -> Path:
     try:
         home = Path.home()
     except RuntimeError:  # a daemon's, a container's user
-        return Path(tempfile.gettempdir()) / "sdfc"
+        from tempfile import gettempdir
+
+        return Path(gettempdir()) / "sdfc"
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local") / "sdfc" / "cache"
     if sys.platform == "darwin":
@@ -31,20 +32,34 @@ def folder() -> Path:
 
 def recall(kind: str, key: str) -> Any:
     """The JSON value that was remembered of a key, or None; what cannot be read was never there."""
-    with contextlib.suppress(OSError, ValueError):
-        return json.loads(_path(kind, key).read_text(encoding="utf-8"))
+    with contextlib.suppress(ValueError):
+        return json.loads(recall_bytes(kind, key) or "null")
     return None
 
 
 def remember(kind: str, key: str, value: Any) -> None:
-    """Keep a JSON value for later runs, where the folder can be written. Written aside, then renamed: never half."""
+    """Keep a JSON value for later runs, where the folder can be written."""
+    remember_bytes(kind, key, json.dumps(value).encode())
+
+
+def recall_bytes(kind: str, key: str) -> bytes | None:
+    """What was remembered of a key, or None; what cannot be read was never there."""
+    with contextlib.suppress(OSError):
+        return _path(kind, key).read_bytes()
+    return None
+
+
+def remember_bytes(kind: str, key: str, value: bytes) -> None:
+    """Keep a value for later runs, where the folder can be written. Written aside, then renamed: never half."""
+    from tempfile import NamedTemporaryFile
+
     path = _path(kind, key)
     with contextlib.suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, delete=False, encoding="utf-8") as file:
-            json.dump(value, file)
+        with NamedTemporaryFile(dir=path.parent, delete=False) as file:
+            file.write(value)
         os.replace(file.name, path)
 
 
 def _path(kind: str, key: str) -> Path:
-    return folder() / kind / f"{hashlib.sha256(key.encode()).hexdigest()[:32]}.json"
+    return folder() / kind / hashlib.sha256(key.encode()).hexdigest()[:32]

@@ -9,8 +9,6 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Self
 from warnings import warn
 
-from sdfc.api.job import Job
-from sdfc.api.renderer import GlRenderer, Progress, Renderer
 from sdfc.api.request import (
     AUTO,
     Setting,
@@ -23,10 +21,13 @@ from sdfc.api.request import (
 )
 from sdfc.api.source import Input, Kind, from_path, from_text, looks_like_path
 from sdfc.diagnostics import DeviceError, Diagnostic
-from sdfc.image.picture import AOVS, Image
+from sdfc.image.picture import AOVS
 
 if TYPE_CHECKING:
     from sdfc.api.animation import Change
+    from sdfc.api.job import Job
+    from sdfc.api.renderer import GlRenderer, Progress, Renderer
+    from sdfc.image.picture import Image
     from sdfc.pipeline import Compiled, Options
     from sdfc.plan.prove import Rays
     from sdfc.scene.model import Param, Scene
@@ -110,6 +111,8 @@ class Program:
         )
 
     def _device_if_any(self) -> GlRenderer | None:
+        from sdfc.api.renderer import GlRenderer
+
         try:
             renderer = self._renderer("gl", lambda _: None)
         except DeviceError:
@@ -184,6 +187,8 @@ class Program:
         count: int = 1,
     ) -> Job:
         """What is asked for, checked, on its device, and compiled as `count` such pictures are worth it."""
+        from sdfc.api.job import Job
+
         size, samples = checked_size(size), checked_samples(samples)
         wanted = checked_names("image", aovs, AOVS)
         (backend,) = checked_names("backend", (backend,), BACKENDS)
@@ -194,6 +199,7 @@ class Program:
     def _chosen(self, tracer: str, renderer: Renderer, rays: int) -> Compiled:
         """The scene as it will be traced: as asked, or for much work as the planner finds it to be fastest."""
         from sdfc.api.choose import WORTH_A_PILOT, decide, options_of
+        from sdfc.api.renderer import GlRenderer
 
         if tracer == AUTO and isinstance(renderer, GlRenderer) and rays >= WORTH_A_PILOT:
             return self.compiled_as(options_of(decide(self.scene, renderer, pilot=True).chosen))
@@ -234,6 +240,8 @@ def compile(scene: str | Path, kind: Kind | None = None) -> Program:
 def open_renderer(backend: str, note: Callable[[str], None]) -> Renderer:
     """What draws: OpenGL where there is one, or NumPy, which `note` is told."""
     if backend != "cpu":
+        from sdfc.api.renderer import GlRenderer
+
         try:
             return GlRenderer()
         except DeviceError as error:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -54,8 +53,10 @@ class View:
 
 def suggestion(name: str, known: Iterable[str]) -> str:
     """` (did you mean 'x'?)`, or ` (there are a, b, c)`, for a message about a name that is not known."""
+    from difflib import get_close_matches
+
     names = sorted(known)
-    close = difflib.get_close_matches(name, names, n=1)
+    close = get_close_matches(name, names, n=1)
     if close:
         return f" (did you mean '{close[0]}'?)"
     return f" (there are: {', '.join(names)})" if names else " (there are none)"

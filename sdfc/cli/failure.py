@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import os
 import sys
-import traceback
 from collections.abc import Iterable
 from typing import Any
 
@@ -72,7 +70,9 @@ def warn(warnings: Iterable[Diagnostic]) -> None:
 
 def suggestion(name: str, known: Iterable[str]) -> str:
     """` (did you mean 'x'?)` where something is close."""
-    close = difflib.get_close_matches(name, list(known), n=1)
+    from difflib import get_close_matches
+
+    close = get_close_matches(name, list(known), n=1)
     return f" (did you mean '{close[0]}'?)" if close else ""
 
 
@@ -89,7 +89,9 @@ def _is_debugging() -> bool:
 
 def _stage(error: BaseException) -> str:
     """The part of sdfc that was at work: the innermost one on the stack."""
-    for frame, _ in reversed(list(traceback.walk_tb(error.__traceback__))):
+    from traceback import walk_tb
+
+    for frame, _ in reversed(list(walk_tb(error.__traceback__))):
         module = frame.f_globals.get("__name__", "")
         if module.startswith("sdfc."):
             return str(module.split(".")[1])
@@ -101,7 +103,9 @@ def _bug(error: BaseException, stage: str) -> str:
         str(error) if type(error).__name__.startswith(("Internal", "Shader")) else f"{type(error).__name__}: {error}"
     )
     if _is_debugging():
-        shown = "".join(traceback.format_exception(error))
+        from traceback import format_exception
+
+        shown = "".join(format_exception(error))
         return f"{shown}error: this is a bug in sdfc, in its {stage} stage"
     advice = "please report it with the scene; SDFC_DEBUG=1 shows the traceback"
     return f"error: this is a bug in sdfc, in its {stage} stage: {message}\n  {advice}"

@@ -22,6 +22,7 @@ from sdfc.glsl.proven import ProvenWriter, TraceText
 from sdfc.glsl.source import Item, joined, parse, pruned
 from sdfc.glsl.span import SpanWriter
 from sdfc.glsl.surface import SurfaceWriter
+from sdfc.glsl.templates import KeptTemplates
 from sdfc.plan.plan import CUT, FINE, GROW, HORIZON, LIFT, MOST_LOOPS, SMALLEST_TOLERANCE, TILE, Plan
 from sdfc.plan.setting import Setting
 from sdfc.plan.steps import Step, is_finite
@@ -61,6 +62,7 @@ def environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
         autoescape=False,
+        bytecode_cache=KeptTemplates(),
     )
     made.filters["in_template_literal"] = lambda text: re.sub(r"[\\`$]", r"\\\g<0>", text)  # of JavaScript
     return made

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import secrets
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -59,7 +58,7 @@ def _stage(path: Path, data: bytes, temporaries: dict[Path, Path]) -> None:
         except OSError as error:
             raise OutputError(f"cannot write '{path}': {error.strerror}") from error
         return
-    temporary = target.with_name(f".{target.name[:80]}.{secrets.token_hex(4)}.tmp")
+    temporary = target.with_name(f".{target.name[:80]}.{os.urandom(4).hex()}.tmp")
     temporaries[target] = temporary
     try:
         with open(temporary, "xb") as file:  # the user's umask decides the rights

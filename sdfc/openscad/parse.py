@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
+from sdfc import packaged
 from sdfc.diagnostics import SceneError, Source, Span, scene_error
 from sdfc.openscad.syntax import Argument, Call, Value
 from sdfc.syntax import tables
@@ -106,7 +106,7 @@ def _machine() -> Machine:
 
 
 def _grammar() -> str:
-    return files("sdfc.grammar").joinpath("csg.lark").read_text(encoding="utf-8")
+    return (packaged.folder("sdfc.grammar") / "csg.lark").read_text(encoding="utf-8")
 
 
 def parse(source: Source) -> tuple[Call, ...]:

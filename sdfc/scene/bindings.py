@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Generic, TypeVar
@@ -73,5 +72,7 @@ class Bindings(ABC, Generic[V]):
 
 def did_you_mean(name: str, known: Sequence[str]) -> str | None:
     """A hint with the nearest known name, if there is one near."""
-    close = difflib.get_close_matches(name, sorted(set(known)), n=1)
+    from difflib import get_close_matches
+
+    close = get_close_matches(name, sorted(set(known)), n=1)
     return f"did you mean '{close[0]}'?" if close else None

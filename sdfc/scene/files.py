@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 from sdfc.diagnostics import Source, Span, scene_error
@@ -75,6 +74,8 @@ def _quoted(name: str) -> str:
 
 def rows(source: Source, span: Span) -> tuple[Row, ...]:
     """The rows of a CSV; its first line names the columns."""
+    import csv
+
     reader = csv.reader(source.text.splitlines(keepends=True), skipinitialspace=True)
     starts = _line_starts(source.text)
     found: list[Row] = []

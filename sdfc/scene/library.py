@@ -6,10 +6,10 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from types import MappingProxyType
 from typing import cast
 
+from sdfc import packaged
 from sdfc.diagnostics import InternalError, Source, Span
 from sdfc.field.graph import Expr, FieldGraph
 from sdfc.scene.check import has_sizes, try_out
@@ -122,9 +122,7 @@ def _contents() -> _Contents:
     """Found by their first words alone: a declaration ends where the next begins."""
     fields: dict[str, _Place] = {}
     functions: dict[tuple[str, str], _Place] = {}
-    for entry in sorted(files("sdfc.std").iterdir(), key=lambda e: e.name):
-        if not entry.name.endswith(".sdf"):
-            continue
+    for entry in sorted(packaged.folder("sdfc.std").glob("*.sdf")):
         source = Source(f"std/{entry.name}", entry.read_text(encoding="utf-8"))
         found = list(_DECLARATION.finditer(source.text))
         ends = [match.start() for match in found[1:]] + [len(source.text)]

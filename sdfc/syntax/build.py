@@ -7,7 +7,6 @@ for an optional part that is not there.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from string import ascii_letters
 from typing import Any
 
 from sdfc.diagnostics import Span
@@ -15,7 +14,7 @@ from sdfc.syntax import tree
 from sdfc.syntax.machine import Token
 
 Parts = Sequence[Any]
-_UNIT = ascii_letters + "_%"
+_UNIT = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_%"
 
 
 def _nodes(parts: Parts) -> tuple[Any, ...]:

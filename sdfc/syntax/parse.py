@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from importlib.resources import files
 from typing import cast
 
+from sdfc import packaged
 from sdfc.diagnostics import Diagnostic, SceneError, Source, Span, scene_error
 from sdfc.syntax import tables
 from sdfc.syntax.build import Builder
@@ -80,4 +80,4 @@ def _machine() -> Machine:
 
 
 def _grammar() -> str:
-    return files("sdfc.grammar").joinpath("scene.lark").read_text(encoding="utf-8")
+    return (packaged.folder("sdfc.grammar") / "scene.lark").read_text(encoding="utf-8")

@@ -52,6 +52,23 @@ def test_emitting_opens_no_device(scene: Path) -> None:
     assert (done.stdout.strip(), done.stderr) == ("", "")
 
 
+@pytest.mark.parametrize(
+    ("verb", "unwanted"),
+    [
+        (("emit-glsl",), {"numpy", "moderngl", "lark", "PIL", "sdfc.api.renderer", "sdfc.syntax.mistakes"}),
+        (("check",), {"numpy", "moderngl", "lark", "jinja2", "sdfc.api.renderer", "sdfc.glsl", "importlib.resources"}),
+    ],
+)
+def test_a_verb_imports_nothing_heavy_that_it_does_not_need(scene: Path, verb: tuple[str], unwanted: set[str]) -> None:
+    run(*verb, scene)  # the grammar's tables are there now
+    script = (
+        "import sys; from sdfc.cli.verbs import command; command.main(sys.argv[1:], standalone_mode=False);"
+        f"print('---', *sorted({unwanted!r} & sys.modules.keys()))"
+    )
+    done = subprocess.run([sys.executable, "-c", script, *verb, scene], capture_output=True, text=True, timeout=60)
+    assert (done.stdout.splitlines()[-1].strip(), done.stderr) == ("---", "")
+
+
 def test_a_reader_that_leaves_is_no_failure(scene: Path) -> None:
     command = f"{' '.join(COMMAND)} check {scene} --show glsl | head -1; echo ${{PIPESTATUS[0]}}"
     done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=60)
