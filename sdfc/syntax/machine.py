@@ -66,7 +66,7 @@ class Machine:
         values: list[Part] = []
         for token in self._tokens(source, start, len(source.text) if end is None else end, passed):
             kind, state = token.type, passed[-1]
-            while (step := state.get(kind)) is not None and step < 0:
+            while kind in state and (step := state[kind]) < 0:
                 origin, size, make = rules[~step]
                 if make is None:
                     state = passed[-1] = states[passed[-2][origin]]
@@ -79,7 +79,7 @@ class Machine:
                     return values[0]
                 state = states[step]
                 passed.append(state)
-            if step is None:
+            if kind not in state:
                 break
             passed.append(states[step])
             values.append(token)
