@@ -25,9 +25,9 @@ def _number(node: tree.Number, names: Names) -> Value:
     if factor is None:
         raise unknown_unit(node)
     unit = Unit.ANGLE if node.unit else Unit.NUMBER
-    number = node.value * factor
-    live = literal(node, (number,), unit, names.context)
-    return Quantity(names.context.graph.constant(number) if live is None else live, unit)
+    number, context = node.value * factor, names.context
+    live = literal(node, (number,), unit, context) if context.literals else None
+    return Quantity(live or context.graph.constant(number), unit)
 
 
 def _color(node: tree.Color, names: Names) -> Value:

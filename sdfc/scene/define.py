@@ -234,7 +234,8 @@ class _Maker:
     def _found(self, declared: tree.FieldParameter, kind: Kind) -> _Found | None:
         """The default as a function of the children's facts, where it asks for any."""
         node = declared.default
-        if node is None or not mentions(node).used.intersection(n for n, k in self.kinds.items() if k.is_child):
+        children = [name for name, kind in self.kinds.items() if kind.is_child]
+        if node is None or not children or mentions(node).used.isdisjoint(children):
             return None
         if declared.limits:
             raise scene_error("what is found from a shape has no limits", declared.span)

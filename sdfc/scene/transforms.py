@@ -30,7 +30,7 @@ def transform(receiver: Shape, link: tree.Method, names: Names, span: Span) -> S
     if not given:
         raise scene_error(f"{name} needs an argument", link.name.span, "it has " + ", ".join(parameters))
     forward, inverse = build(given, receiver.dimension, names, link.span)
-    for entry in forward.entries:
+    for entry in dict.fromkeys(forward.entries):  # most are the same 0 and 1
         check_finite(name, entry, link.span, names.context)
     names.context.budget.shape(span)
     return names.context.shapes.affine(forward, inverse, receiver, span)

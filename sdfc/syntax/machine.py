@@ -71,8 +71,9 @@ class Machine:
                 if make is None:
                     state = passed[-1] = states[passed[-2][origin]]
                     continue
-                parts = values[len(values) - size :]
-                del values[len(values) - size :], passed[len(passed) - size :]
+                parts = values[-size:] if size else []
+                if size:
+                    del values[-size:], passed[-size:]
                 values.append(make(parts))
                 step = passed[-1][origin]
                 if step == last:
@@ -115,10 +116,12 @@ def _maker(rule: Rule, callbacks: object) -> Callable[[list[Part]], Part] | None
     layout, make = rule.layout, getattr(callbacks, rule.callback) if rule.callback else None
     if layout is None:
         return make
+    if list(layout) == list(range(rule.size)):
+        return (lambda parts: make(_spliced(parts))) if make else _spliced
 
     def laid_out(parts: list[Part]) -> Part:
         kept = _spliced([None if place is None else parts[place] for place in layout])
-        return kept if make is None else make(kept)
+        return make(kept) if make else kept
 
     return laid_out
 

@@ -9,6 +9,7 @@ from sdfc.record import dataclass
 from sdfc.syntax import tree
 
 _PLACES = ("span", "operator_span")  # what a node has beside its parts
+_NAMES_AND_NUMBERS = ("str", "float", "Identifier", "Identifier | None")
 _parts: dict[Any, tuple[str, ...]] = {}
 
 
@@ -47,6 +48,6 @@ def mentions(root: object) -> Mentions:
 
 def _parts_of(kind: Any) -> tuple[str, ...]:
     """The attributes of a node that hold nodes; of anything else, none."""
-    if not is_dataclass(kind) or kind is tree.Identifier:
+    if not is_dataclass(kind):
         return ()
-    return tuple(f.name for f in fields(kind) if f.name not in _PLACES and f.type not in ("str", "float"))
+    return tuple(f.name for f in fields(kind) if f.name not in _PLACES and f.type not in _NAMES_AND_NUMBERS)
