@@ -181,14 +181,14 @@ def _number(node: tree.Number, scope: Scope) -> Value:
 
 
 def _name(node: tree.Name, scope: Scope) -> Value:
-    return scope.find(node.text, node.span)
+    value = scope.values.get(node.text)
+    return scope.find(node.text, node.span) if value is None else value
 
 
 def _list(node: tree.ListLiteral, scope: Scope) -> Value:
     values = _elements(node.elements, scope)
-    if 2 <= len(values) <= 4 and all(isinstance(v, Expr) and v.type is Type.FLOAT for v in values):
-        return scope.graph.vector(*cast("list[Expr]", values))
-    return tuple(values)
+    numbers = [v for v in values if isinstance(v, Expr) and v.type is Type.FLOAT]
+    return scope.graph.vector(*numbers) if 2 <= len(numbers) == len(values) <= 4 else tuple(values)
 
 
 def _unary(node: tree.Unary, scope: Scope) -> Value:
@@ -294,10 +294,10 @@ def _positional(node: tree.Call, scope: Scope) -> list[Value]:
 
 
 def _expressions(values: Sequence[Value], span: Span) -> list[Expr]:
-    for value in values:
-        if not isinstance(value, Expr):
-            raise scene_error("expected numbers or vectors", span)
-    return cast("list[Expr]", list(values))
+    expressions = [value for value in values if isinstance(value, Expr)]
+    if len(expressions) < len(values):
+        raise scene_error("expected numbers or vectors", span)
+    return expressions
 
 
 def _child_at(node: tree.Call, child: Child, scope: Scope) -> Expr:

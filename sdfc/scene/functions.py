@@ -14,6 +14,7 @@ CONSTANTS: Mapping[str, float] = MappingProxyType({"pi": math.pi, "tau": math.ta
 
 _NEAREST_ZERO = 1e-20  # of `nonzero`: its inverse and products of that with lengths stay finite in float32
 
+_NUMBERS = frozenset({Type.FLOAT})
 _NAMES = {Type.BOOL: "a boolean", Type.FLOAT: "a number"}
 
 
@@ -28,12 +29,15 @@ def _joined(types: Sequence[Type]) -> str:
 
 def common_size(what: str, args: Sequence[Expr], span: Span) -> int:
     """The size of a component-by-component result; a number goes with any vector."""
-    if any(a.type is Type.BOOL for a in args):
+    types = {a.type for a in args}
+    if types <= _NUMBERS:
+        return 1
+    if Type.BOOL in types:
         raise scene_error(f"{what} takes numbers and vectors, not {_joined([a.type for a in args])}", span)
-    sizes = {a.type.size for a in args} - {1}
-    if len(sizes) > 1:
+    vector, *others = types - _NUMBERS
+    if others:
         raise scene_error(f"{what} cannot mix {_joined([a.type for a in args])}", span)
-    return sizes.pop() if sizes else 1
+    return vector.size
 
 
 # --- operators
