@@ -43,9 +43,10 @@ def remember(kind: str, key: str, value: Any) -> None:
 
 
 def recall_bytes(kind: str, key: str) -> bytes | None:
-    """What was remembered of a key, or None; what cannot be read was never there."""
-    with contextlib.suppress(OSError):
-        return _path(kind, key).read_bytes()
+    """What was remembered of a key, or None; what cannot be read was never there, nor was what another user wrote."""
+    with contextlib.suppress(OSError), _path(kind, key).open("rb") as file:
+        if sys.platform == "win32" or os.fstat(file.fileno()).st_uid == os.getuid():
+            return file.read()
     return None
 
 

@@ -49,6 +49,15 @@ def test_a_damaged_one_is_made_again(folder: Path, kept_of_it: int) -> None:
     assert kept.read_bytes() == whole
 
 
+def test_code_that_another_user_left_is_not_run(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rendered()
+    (kept,) = folder.iterdir()
+    kept.write_bytes(kept.read_bytes().replace(b" + 1", b" - 1"))
+    assert rendered() == "2 - 1"
+    monkeypatch.setattr("os.getuid", lambda: -1)
+    assert rendered() == "2 + 1"
+
+
 def test_nothing_is_kept_where_nothing_can_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SDFC_CACHE_DIR", "/dev/null/nowhere")
     assert rendered() == "2 + 1"
