@@ -5,23 +5,25 @@ Bounds of second derivatives by intervals, over boxes of points and cells of dir
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sdfc.field import interval_rules as rules
 from sdfc.field.core import DEEP
-from sdfc.field.graph import Expr, Op
+from sdfc.field.graph import Expr, Op, topological
 from sdfc.field.interval import halves
 from sdfc.field.interval_bends import BENDS, Bend, everything_where, moving
 from sdfc.field.interval_rules import RULES, Array, Interval
 from sdfc.field.interval_slopes import SLOPES, Slope
+from sdfc.field.memory import Memory, fingerprint, params_fingerprint
 from sdfc.field.order import evaluation_order
 
 BOXES = 512  # how many boxes `bend_bounds` looks at
 CELLS = 4  # its directions: half of a cube's faces in CELLS x CELLS cells
 AT_ONCE = 64  # boxes that are cut in one go
+_FOUND: Memory[list[float]] = Memory()
 _CUTS, _GAIN = 6, 0.9  # so many cuts are to bring this, or there are no more: half the bend saves a fifth of the steps
 
 
@@ -96,21 +98,33 @@ def bend_bounds(
     inside the solid does not count. Infinite if none is found. The box is cut where the bounds are worst until `boxes`
     have been looked at, or cutting does not help.
     """
-    evaluator = BendEvaluator(root, convex)
-    search = _Search(evaluator, pieces, np.array(lo, float), np.array(hi, float), _anywhere())
-    while search.seen < boxes and not np.isfinite(search.bounds).all():
-        search.cut()
-    if np.isfinite(search.bounds).all():  # it is worth the dearer look, by directions
-        search = _Search(evaluator, pieces, np.array(lo, float), np.array(hi, float), _directions())
-        before = np.full(len(pieces), np.inf)
-        while search.seen < boxes and (search.worst() < _GAIN * before).any():
-            before = search.worst()
-            for _ in range(_CUTS):
-                search.cut()
-    return [float(k) for k in search.worst()]
+
+    def search() -> list[float]:
+        evaluator = BendEvaluator(root, convex)
+        cells = _Cells(evaluator, pieces, np.array(lo, float), np.array(hi, float), _anywhere())
+        while cells.seen < boxes and not np.isfinite(cells.bounds).all():
+            cells.cut()
+        if np.isfinite(cells.bounds).all():  # it is worth the dearer look, by directions
+            cells = _Cells(evaluator, pieces, np.array(lo, float), np.array(hi, float), _directions())
+            before = np.full(len(pieces), np.inf)
+            while cells.seen < boxes and (cells.worst() < _GAIN * before).any():
+                before = cells.worst()
+                for _ in range(_CUTS):
+                    cells.cut()
+        return [float(k) for k in cells.worst()]
+
+    ranges = tuple(params_fingerprint(piece) for piece in pieces)
+    question = _formulas(root, convex), tuple(lo), tuple(hi), ranges, boxes
+    return list(_FOUND.recall(question, search))
 
 
-class _Search:
+def _formulas(root: Expr, convex: Mapping[int, tuple[Expr, float]]) -> Hashable:
+    """What is asked about, whatever graph it is of."""
+    known = [(node, *convex[node.id]) for node in topological([root]) if node.id in convex]
+    return fingerprint([root, *(e for node, point, _ in known for e in (node, point))]), tuple(s for _, _, s in known)
+
+
+class _Cells:
     """Boxes of points, each for one piece of the params' ranges, and how hard the root may bend down in each."""
 
     def __init__(

@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from sdfc.field.graph import Expr, Op, topological
 from sdfc.field.interval import IntervalEvaluator, Parameters, halves
 from sdfc.field.interval_rules import EPSILON, Array, Interval
+from sdfc.field.memory import Memory, fingerprint, params_fingerprint
 
 BOXES = 2048  # how many boxes `gradient_bound` looks at
 GRID = 6  # its directions: a cube's faces in GRID x GRID cells
 _ANYTHING: Parameters = {}
+_FOUND: Memory[float] = Memory()
 
 
 def gradient_bound(
@@ -31,13 +33,18 @@ def gradient_bound(
     notices a jump (its gradient is 0 on both sides). Where two kinks meet the hulls of their sides add up: an exact
     box's distance, for one, is bounded by 2.06.
     """
-    search = _Search(root, lo, hi, pieces)
-    while search.seen < boxes and search.bounds.max() > 1.02 * search.attained:
-        search.cut(max(1, (boxes - search.seen) // 2))
-    return float(search.bounds.max())
+
+    def search() -> float:
+        cells = _Cells(root, lo, hi, pieces)
+        while cells.seen < boxes and cells.bounds.max() > 1.02 * cells.attained:
+            cells.cut(max(1, (boxes - cells.seen) // 2))
+        return float(cells.bounds.max())
+
+    ranges = tuple(params_fingerprint(piece) for piece in pieces)
+    return _FOUND.recall((fingerprint([root]), tuple(lo), tuple(hi), ranges, boxes), search)
 
 
-class _Search:
+class _Cells:
     """Boxes of points, each for one piece of the params' ranges, with a bound of |grad root| in each."""
 
     def __init__(self, root: Expr, lo: Sequence[float], hi: Sequence[float], pieces: Sequence[Parameters]) -> None:
