@@ -17,13 +17,12 @@ from sdfc.field.interval import halves
 from sdfc.field.interval_bends import BENDS, Bend, everything_where, moving
 from sdfc.field.interval_rules import RULES, Array, Interval
 from sdfc.field.interval_slopes import SLOPES, Slope
-from sdfc.field.memory import Memory, fingerprint, params_fingerprint
+from sdfc.field.memory import MEMORY, fingerprint, params_fingerprint
 from sdfc.field.order import evaluation_order
 
 BOXES = 512  # how many boxes `bend_bounds` looks at
 CELLS = 4  # its directions: half of a cube's faces in CELLS x CELLS cells
 AT_ONCE = 64  # boxes that are cut in one go
-_FOUND: Memory[list[float]] = Memory()
 _CUTS, _GAIN = 6, 0.9  # so many cuts are to bring this, or there are no more: half the bend saves a fifth of the steps
 
 
@@ -114,8 +113,8 @@ def bend_bounds(
         return [float(k) for k in cells.worst()]
 
     ranges = tuple(params_fingerprint(piece) for piece in pieces)
-    question = _formulas(root, convex), tuple(lo), tuple(hi), ranges, boxes
-    return list(_FOUND.recall(question, search))
+    question = "bend", _formulas(root, convex), tuple(lo), tuple(hi), ranges, boxes
+    return list(MEMORY.recall(question, search))
 
 
 def _formulas(root: Expr, convex: Mapping[int, tuple[Expr, float]]) -> Hashable:

@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
+import hashlib
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterable, Mapping
-from typing import Generic, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sdfc.field.graph import Expr, Op, topological
+from sdfc.field.graph import Expr, topological
 
 Found = TypeVar("Found")
 MOST = 1024  # numbers: of hundreds of parts
 
 
-class Memory(Generic[Found]):
-    """The last answers of a search, by all that it depends on. Answers are values that no compilation owns."""
+class Memory:
+    """The last answers of searches, by all that they depend on. Answers are values that no compilation owns."""
 
     def __init__(self, most: int = MOST) -> None:
         self._most = most
-        self._found: OrderedDict[Hashable, Found] = OrderedDict()
+        self._found: OrderedDict[Hashable, Any] = OrderedDict()
         self._lock = threading.Lock()  # scenes may be compiled in several threads
 
     def recall(self, question: Hashable, search: Callable[[], Found]) -> Found:
@@ -29,7 +30,7 @@ class Memory(Generic[Found]):
         with self._lock:
             if question in self._found:
                 self._found.move_to_end(question)
-                return self._found[question]
+                return cast("Found", self._found[question])
         answer = search()
         with self._lock:
             self._found[question] = answer
@@ -37,17 +38,26 @@ class Memory(Generic[Found]):
                 self._found.popitem(last=False)
         return answer
 
+    def forget(self) -> None:
+        """Nothing was ever asked."""
+        with self._lock:
+            self._found.clear()
 
-def fingerprint(roots: Iterable[Expr]) -> Hashable:
-    """Equal for expressions that are the same formulas, in whatever graphs."""
+
+MEMORY = Memory()
+
+
+def fingerprint(roots: Iterable[Expr]) -> bytes:
+    """Equal for expressions that are the same formulas, in whatever graphs; short, however long they are."""
     wanted = list(roots)
     place: dict[int, int] = {}
-    nodes: list[Hashable] = []
+    text = hashlib.blake2b(digest_size=16)
     for node in topological(wanted):
-        place[node.id] = len(nodes)
-        value = repr(node.value) if node.op is Op.CONST else node.value  # keeps 0.0 and -0.0 apart, and NaN equal
-        nodes.append((node.op.value, node.type.value, tuple([place[a.id] for a in node.args]), value))
-    return tuple(nodes), tuple([place[root.id] for root in wanted])
+        place[node.id] = len(place)
+        # a constant's repr keeps 0.0 and -0.0 apart, and makes NaN equal to itself
+        text.update(f"{node.op.value} {node.type.value} {[place[a.id] for a in node.args]} {node.value!r}\n".encode())
+    text.update(repr([place[root.id] for root in wanted]).encode())
+    return text.digest()
 
 
 def params_fingerprint(params: Mapping[str, ArrayLike]) -> Hashable:

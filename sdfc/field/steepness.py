@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 from sdfc.field.graph import Expr, Op, topological
 from sdfc.field.interval import IntervalEvaluator, Parameters, halves
 from sdfc.field.interval_rules import EPSILON, Array, Interval
-from sdfc.field.memory import Memory, fingerprint, params_fingerprint
+from sdfc.field.memory import MEMORY, fingerprint, params_fingerprint
 
 BOXES = 2048  # how many boxes `gradient_bound` looks at
 GRID = 6  # its directions: a cube's faces in GRID x GRID cells
 _ANYTHING: Parameters = {}
-_FOUND: Memory[float] = Memory()
 
 
 def gradient_bound(
@@ -41,7 +40,7 @@ def gradient_bound(
         return float(cells.bounds.max())
 
     ranges = tuple(params_fingerprint(piece) for piece in pieces)
-    return _FOUND.recall((fingerprint([root]), tuple(lo), tuple(hi), ranges, boxes), search)
+    return MEMORY.recall(("steepest", fingerprint([root]), tuple(lo), tuple(hi), ranges, boxes), search)
 
 
 class _Cells:

@@ -12,14 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from sdfc.field.derivative import directional, gradient
 from sdfc.field.graph import Expr, Type
-from sdfc.field.memory import Memory, fingerprint, params_fingerprint
+from sdfc.field.memory import MEMORY, fingerprint, params_fingerprint
 from sdfc.field.numeric import Evaluator
 from sdfc.field.piece import SHORT, look
 from sdfc.field.span import span
 from sdfc.field.span_ranges import HUGE
 
 Array = NDArray[np.float64]
-_TRIED: Memory[float] = Memory()
 Params: TypeAlias = Mapping[str, ArrayLike]
 Rule: TypeAlias = Callable[["_Rays", Array, NDArray[np.int64]], Array]  # rays, t, which: how far is clear
 
@@ -62,24 +61,24 @@ class Trial:
 
     def steepness(self) -> float:
         """The gradient's length where rays first meet the surface, of most of them; infinite where none does."""
-        return _TRIED.recall(("steepness", self._question), self._steepness)
+        return MEMORY.recall(("steepness", self._question), self._steepness)
 
     def balls(self, lipschitz: float) -> float:
         """Mean steps of a ray by empty balls."""
-        return _TRIED.recall(("balls", self._question, lipschitz), lambda: self._mean(self._by_balls(lipschitz)))
+        return MEMORY.recall(("balls", self._question, lipschitz), lambda: self._mean(self._by_balls(lipschitz)))
 
     def parabolas(self, core: Expr, lipschitz: float, bend: float) -> float:
         """Mean steps by the roots of the parabolas below the field's core, or by balls where these are more."""
         question = "parabolas", self._question, fingerprint([core]), lipschitz, bend
-        return _TRIED.recall(question, lambda: self._mean(self._by_parabolas(core, lipschitz, bend)))
+        return MEMORY.recall(question, lambda: self._mean(self._by_parabolas(core, lipschitz, bend)))
 
     def pieces(self, lipschitz: float) -> float:
         """Mean steps by what is known of the pieces of the ray ahead; the constant may be infinite."""
-        return _TRIED.recall(("pieces", self._question, lipschitz), lambda: self._mean(self._by_pieces(lipschitz)))
+        return MEMORY.recall(("pieces", self._question, lipschitz), lambda: self._mean(self._by_pieces(lipschitz)))
 
     def is_bounded(self) -> bool:
         """Whether spans bound the field along rays, however short they must be: it has no jump, and no pole."""
-        return bool(_TRIED.recall(("is bounded", self._question), self._is_bounded))
+        return MEMORY.recall(("is bounded", self._question), self._is_bounded)
 
     @cached_property
     def _near(self) -> Evaluator:

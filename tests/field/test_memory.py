@@ -9,9 +9,8 @@ from hypothesis import given, settings
 from random_expressions import expressions
 
 import sdfc
-from sdfc.field import bend, steepness, trial
 from sdfc.field.graph import Expr, FieldGraph, Op, topological
-from sdfc.field.memory import Memory, fingerprint, params_fingerprint
+from sdfc.field.memory import MEMORY, Memory, fingerprint, params_fingerprint
 from sdfc.field.show import show
 from sdfc.field.steepness import gradient_bound
 
@@ -59,7 +58,7 @@ def test_a_bound_is_of_its_own_box_and_ranges() -> None:
 
 
 def test_a_memory_forgets_what_was_not_asked_for_longest() -> None:
-    memory: Memory[int] = Memory(most=2)
+    memory: Memory = Memory(most=2)
     asked: list[str] = []
 
     def recall(question: str) -> int:
@@ -73,15 +72,9 @@ def test_a_memory_forgets_what_was_not_asked_for_longest() -> None:
 def test_an_edit_elsewhere_searches_for_nothing_again(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     text = (SCENES / f"{name}.sdf").read_text()
     searches: list[str] = []
-    for module in (steepness, bend, trial):
-        memory: Memory[object] = Memory()
-        monkeypatch.setattr(module, "_TRIED" if module is trial else "_FOUND", memory)
-        keep = memory.recall
-        monkeypatch.setattr(
-            memory,
-            "recall",
-            lambda question, search, keep=keep: keep(question, lambda: searches.append("one") or search()),
-        )
+    recall = MEMORY.recall
+    MEMORY.forget()
+    monkeypatch.setattr(MEMORY, "recall", lambda q, search: recall(q, lambda: searches.append("one") or search()))
 
     def compiled(source: str) -> str:
         return sdfc.compile(source).compiled().glsl("radiance")
