@@ -32,6 +32,9 @@ class Bounds:
 
     def box(self, shape: Shape, level: float = 0.0) -> Box:
         """A box that holds every point where the shape's field is `level` or less; of the shape's own dimension."""
+        known = self._boxes.get((shape.id, level))
+        if known is not None:
+            return known
         stack: list[tuple[Shape, float]] = [(shape, level)]
         opened: dict[tuple[int, float], tuple[Sequence[Shape], float]] = {}
         while stack:
@@ -50,9 +53,8 @@ class Bounds:
 
     def moved(self, matrix: Matrix, box: Box) -> Box:
         """The box of the image, for every value of the params."""
-        if matrix.is_constant:
-            rows = [[e.number for e in row] for row in matrix.linear]
-            return box.moved(rows, [e.number for e in matrix.offset])
+        if matrix.numbers is not None:
+            return box.moved(matrix.numbers)
         if not box.is_finite:
             return box if box.is_empty else everything(len(box.lo))
         entries_lo, entries_hi = self._ranges.bounds(matrix.entries)
@@ -158,8 +160,13 @@ class Bounds:
 
 def _usable(box: Box) -> Box:
     """Without bounds beyond what float32 can square: nests of turned boxes double without end."""
-    if all(a >= -_FARTHEST and b <= _FARTHEST for a, b in zip(box.lo, box.hi, strict=True)):
-        return box
+    for a, b in zip(box.lo, box.hi, strict=True):
+        if not (a >= -_FARTHEST and b <= _FARTHEST):
+            return _clipped(box)
+    return box
+
+
+def _clipped(box: Box) -> Box:
     return Box(
         tuple([a if a >= -_FARTHEST else -math.inf for a in box.lo]),
         tuple([b if b <= _FARTHEST else math.inf for b in box.hi]),

@@ -6,9 +6,9 @@ Scalars and vectors mix as in GLSL: a FLOAT with a vector works component by com
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from struct import Struct
-from typing import Final, TypeAlias
+from typing import Any, Final, TypeAlias, TypeVar
 
 from sdfc.field.folding import fold
 from sdfc.field.operations import BINARY as BINARY
@@ -30,6 +30,7 @@ _RESULT = dict.fromkeys((Op.DOT, Op.LENGTH), Type.FLOAT) | dict.fromkeys(COMPARI
 Value: TypeAlias = tuple[float, ...] | tuple[int, ...] | str | None
 Number: TypeAlias = float | int
 Operand: TypeAlias = "Expr | float | int"
+T = TypeVar("T")
 
 
 class Expr:
@@ -113,6 +114,15 @@ class FieldGraph:
         self._leaves: dict[tuple[Op, Type, str], Expr] = {}
         # what was asked for, and what it was made to: a node of its own, or a simpler one
         self._made: dict[tuple[Op, tuple[Expr, ...], Value], Expr] = {}
+
+        self._remembered: dict[Hashable, Any] = {}
+
+    def remembered(self, question: Hashable, answer: Callable[[], T]) -> T:
+        """What was found out about nodes of this graph, once for all who ask: the question says what, and of which."""
+        if question not in self._remembered:
+            self._remembered[question] = answer()
+        found: T = self._remembered[question]
+        return found
 
     def __len__(self) -> int:
         return self._count
