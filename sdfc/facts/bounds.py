@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import assert_never
 
-from sdfc.facts.box import Box, everything, nothing
+from sdfc.facts.box import Box, everything, hull, meeting, nothing
 from sdfc.facts.enclosure import enclosing
 from sdfc.facts.ranges import Ranges
 from sdfc.field.graph import Expr, FieldGraph, Type
@@ -107,12 +107,9 @@ class Bounds:
             case Affine():
                 return self.moved(node.forward, boxes[0])
             case Union():
-                return _hull(boxes)
+                return hull(boxes)
             case Intersection():
-                result = boxes[0]
-                for box in boxes[1:]:
-                    result = result.meet(box)
-                return result
+                return meeting(boxes)
             case Complement():
                 return everything(node.dimension)
             case Paint():
@@ -130,7 +127,7 @@ class Bounds:
         if definition.is_standard and boxes and level <= 0.0 and all(b.is_empty for b in boxes):
             return nothing(size)
         if claims.bounds is None:  # what says how far it lowers its children does not move them
-            return _hull(boxes) if claims.lowering is not None and boxes else self._enclosed(node, level)
+            return hull(boxes) if claims.lowering is not None and boxes else self._enclosed(node, level)
         if level > 0.0 and not claims.bounds_use_level and not (definition.is_standard and boxes):
             return self._widened(node, claims, level, boxes)
         return self._claimed(node, level, boxes)
@@ -138,7 +135,7 @@ class Bounds:
     def _widened(self, node: Apply, claims: Claims, level: float, boxes: list[Box]) -> Box:
         """Where the claim is of level 0: its author need not have thought of others."""
         if claims.lowering is not None and boxes:
-            return _hull(boxes)
+            return hull(boxes)
         if claims.exactness in _EXACT_OUTSIDE and not boxes:
             return self._claimed(node, level, boxes).widened(level)
         return self._enclosed(node, level)
@@ -171,13 +168,6 @@ def _clipped(box: Box) -> Box:
         tuple([a if a >= -_FARTHEST else -math.inf for a in box.lo]),
         tuple([b if b <= _FARTHEST else math.inf for b in box.hi]),
     )
-
-
-def _hull(boxes: Sequence[Box]) -> Box:
-    result = boxes[0]
-    for box in boxes[1:]:
-        result = result.hull(box)
-    return result
 
 
 def child_facts(

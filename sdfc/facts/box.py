@@ -81,6 +81,21 @@ class Box:
         return list(itertools.product(*zip(self.lo, self.hi, strict=True)))
 
 
+def hull(boxes: Sequence[Box]) -> Box:
+    """The box around all of them."""
+    full = [box for box in boxes if not box.is_empty] or boxes[-1:]
+    if len(full) == 1:
+        return full[0]
+    return Box(tuple(map(min, *[box.lo for box in full])), tuple(map(max, *[box.hi for box in full])))
+
+
+def meeting(boxes: Sequence[Box]) -> Box:
+    """The box of what is in all of them."""
+    if len(boxes) == 1:
+        return boxes[0]
+    return Box(tuple(map(max, *[box.lo for box in boxes])), tuple(map(min, *[box.hi for box in boxes])))
+
+
 def everything(dimension: int = 3) -> Box:
     return Box((-INFINITY,) * dimension, (INFINITY,) * dimension)
 

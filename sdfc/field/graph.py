@@ -252,15 +252,13 @@ def topological(roots: Iterable[Expr], below: Callable[[Expr], Sequence[Expr]] |
         node = stack.pop()
         if node in done:
             continue
-        size = len(stack)
-        for argument in reversed(node.args if below is None else below(node)):
-            if argument not in done:
-                if len(stack) == size:
-                    stack.append(node)  # again, when what is missing is there
-                stack.append(argument)
-        if len(stack) == size:
+        args = node.args if below is None else below(node)
+        if done.issuperset(args):
             done.add(node)
             order.append(node)
+        else:
+            stack.append(node)  # again, when what is missing is there
+            stack += args[::-1]
     return order
 
 

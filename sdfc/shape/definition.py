@@ -155,6 +155,11 @@ class Definition:
         """Of the values."""
         return tuple([p.name for p in self.values])
 
+    @cached_property
+    def asks_for_boxes(self) -> bool:
+        """Whether a value is found from the children's boxes."""
+        return any(p.found is not None for p in self.values)
+
     @property
     def is_primitive(self) -> bool:
         return not self.children

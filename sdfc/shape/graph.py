@@ -208,16 +208,18 @@ def topological(root: Shape) -> list[Shape]:
         node = stack.pop()
         if node in done:
             continue
-        size = len(stack)
-        for child in reversed(node.children):
-            if child not in done:
-                if len(stack) == size:
-                    stack.append(node)  # again, when its children are there
-                stack.append(child)
-        if len(stack) == size:
+        if done.issuperset(node.children):
             done.add(node)
             order.append(node)
+        else:
+            stack.append(node)  # again, when its children are there
+            stack += node.children[::-1]
     return order
+
+
+def definitions_of(root: Shape) -> set[Definition]:
+    """All that are applied below the root."""
+    return {node.definition for node in topological(root) if isinstance(node, Apply)}
 
 
 __all__ = [
@@ -232,5 +234,6 @@ __all__ = [
     "ShapeGraph",
     "Union",
     "children_of",
+    "definitions_of",
     "topological",
 ]
