@@ -26,30 +26,26 @@ class Bounds:
     def __init__(self, values: FieldGraph, ranges: Ranges) -> None:
         self.values = values
         self._ranges = ranges
-        self._boxes: dict[tuple[int, float], Box] = {}
+        self._boxes: dict[tuple[Shape, float], Box] = {}
         self._lowerings: dict[int, float] = {}
         self._stretches: dict[int, tuple[float, float]] = {}
 
     def box(self, shape: Shape, level: float = 0.0) -> Box:
         """A box that holds every point where the shape's field is `level` or less; of the shape's own dimension."""
-        known = self._boxes.get((shape.id, level))
-        if known is not None:
-            return known
-        stack: list[tuple[Shape, float]] = [(shape, level)]
-        opened: dict[tuple[int, float], tuple[Sequence[Shape], float]] = {}
-        while stack:
-            node, at = stack[-1]
-            key = (node.id, at)
-            if key in self._boxes:
-                stack.pop()
-            elif key in opened:
-                children, below = opened.pop(key)
-                self._boxes[key] = _usable(self._box(node, at, [self._boxes[c.id, below] for c in children]))
-                stack.pop()
+        boxes = self._boxes
+        stack = [(shape, level)]
+        while (shape, level) not in boxes:
+            node, at = asking = stack.pop()
+            if asking in boxes:
+                continue
+            children, below = self._asked(node, at)
+            missing = [(child, below) for child in children if (child, below) not in boxes]
+            if missing:
+                stack.append(asking)
+                stack += missing
             else:
-                opened[key] = children, below = self._asked(node, at)
-                stack.extend((c, below) for c in children if (c.id, below) not in self._boxes)
-        return self._boxes[shape.id, level]
+                boxes[asking] = _usable(self._box(node, at, [boxes[child, below] for child in children]))
+        return boxes[shape, level]
 
     def moved(self, matrix: Matrix, box: Box) -> Box:
         """The box of the image, for every value of the params."""

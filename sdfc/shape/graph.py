@@ -217,9 +217,9 @@ def topological(root: Shape) -> list[Shape]:
     return order
 
 
-def definitions_of(root: Shape) -> set[Definition]:
-    """All that are applied below the root."""
-    return {node.definition for node in topological(root) if isinstance(node, Apply)}
+def definitions_of(root: Shape) -> list[Definition]:
+    """All that are applied below the root, each once."""
+    return list(dict.fromkeys([node.definition for node in topological(root) if isinstance(node, Apply)]))
 
 
 __all__ = [
