@@ -14,7 +14,7 @@ from sdfc.facts.curvature import convex_shapes
 from sdfc.facts.exactness import is_no_distance
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.rule import Rule, Rules
-from sdfc.field.graph import FieldGraph
+from sdfc.field.graph import FieldGraph, Type
 from sdfc.plan.drawn import drawn
 from sdfc.plan.gather import gathered
 from sdfc.plan.steps import (
@@ -34,7 +34,7 @@ from sdfc.plan.steps import (
     Within,
 )
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, topological
-from sdfc.shape.lower import lower_ray
+from sdfc.shape.lower import generic, lower_ray
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
 from sdfc.shape.stretch import largest_stretch, smallest_stretch
@@ -308,8 +308,9 @@ class Prover:
         return self._interval_counts[key]
 
     def _counted(self, shape: Apply) -> int:
-        o, d = self._values.input("o"), self._values.input("d")
-        return len(lower_ray(shape, o, d, self._values.constant(0.0)))
+        """In the form that is printed, which is remembered until then."""
+        o, d, grow = self._values.input("o"), self._values.input("d"), self._values.input("grow", Type.FLOAT)
+        return len(lower_ray(generic(shape, self._values), o, d, grow))
 
 
 def _is_bare(shape: Shape, painted: set[int]) -> bool:
