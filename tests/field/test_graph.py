@@ -9,7 +9,7 @@ from field_trees import PARAM_VALUES, Recipe, trees
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sdfc.field.graph import Expr, FieldGraph, Type, inputs_of, substitute, topological
+from sdfc.field.graph import Expr, FieldGraph, Op, Type, inputs_of, substitute, topological
 from sdfc.field.interval import ConstantBounds, IntervalEvaluator
 
 
@@ -27,9 +27,13 @@ def test_zeros_have_signs_and_every_nan_is_one() -> None:
 def test_what_was_asked_for_once_is_looked_up() -> None:
     graph = FieldGraph()
     x = graph.input("x", Type.FLOAT)
-    first = [x + 0.0, x * 2.0, graph.constant(2.0) * 3.0, -(-x), graph.vector(x, x, 1.0)[2]]
-    count = len(graph)
-    again = [x + 0.0, x * 2.0, graph.constant(2.0) * 3.0, -(-x), graph.vector(x, x, 1.0)[2]]
+
+    def asked() -> list[Expr]:
+        twice = graph.add(Op.NEG, graph.add(Op.NEG, x))
+        return [x + 0.0, x * 2.0, graph.constant(2.0) * 3.0, twice, graph.vector(x, x, 1.0)[2]]
+
+    first, count = asked(), len(graph)
+    again = asked()
     assert [a is b for a, b in zip(first, again, strict=True)] == [True] * 5
     assert len(graph) == count
     assert first[0] is x is first[3] and first[2].number == 6.0 and first[4].number == 1.0
