@@ -114,7 +114,6 @@ class FieldGraph:
         self._leaves: dict[tuple[Op, Type, str], Expr] = {}
         # what was asked for, and what it was made to: a node of its own, or a simpler one
         self._made: dict[tuple[Op, tuple[Expr, ...], Value], Expr] = {}
-
         self._remembered: dict[Hashable, Any] = {}
 
     def remembered(self, question: Hashable, answer: Callable[[], T]) -> T:
@@ -132,14 +131,13 @@ class FieldGraph:
         self._count += 1
         return node
 
-    def _constant(self, type_: Type, numbers: tuple[float, ...]) -> Expr:
+    def _constant(self, type_: Type, numbers: tuple[Number, ...]) -> Expr:
         """Bit for bit, which keeps -0.0 and 0.0 apart; but every NaN is one."""
         key = type_, _BITS[len(numbers)](*numbers)
         node = self._constants.get(key)
         if node is None:
-            if any(map(math.isnan, numbers)):
-                numbers = tuple([math.nan if math.isnan(n) else n for n in numbers])
-                key = type_, _BITS[len(numbers)](*numbers)
+            numbers = tuple([math.nan if math.isnan(n) else float(n) for n in numbers])
+            key = type_, _BITS[len(numbers)](*numbers)
             node = self._constants.get(key) or self._constants.setdefault(key, self._new(_CONST, type_, (), numbers))
         return node
 
@@ -152,10 +150,10 @@ class FieldGraph:
         return self._made.get(key) or self._made.setdefault(key, self._new(op, type_, args, value))
 
     def constant(self, *components: Number) -> Expr:
-        return self._constant(_OF_SIZE[len(components)], tuple(map(float, components)))
+        return self._constant(_OF_SIZE[len(components)], components)
 
     def boolean(self, value: bool) -> Expr:
-        return self._constant(_BOOL, (float(value),))
+        return self._constant(_BOOL, (value,))
 
     def lift(self, value: Operand) -> Expr:
         return value if isinstance(value, Expr) else self.constant(value)
@@ -195,19 +193,19 @@ class FieldGraph:
         return self.add(op, *[self.lift(a) for a in args])
 
     def min(self, a: Operand, b: Operand) -> Expr:
-        return self.call(Op.MIN, a, b)
+        return self.add(Op.MIN, self.lift(a), self.lift(b))
 
     def max(self, a: Operand, b: Operand) -> Expr:
-        return self.call(Op.MAX, a, b)
+        return self.add(Op.MAX, self.lift(a), self.lift(b))
 
     def clamp(self, x: Operand, lo: Operand, hi: Operand) -> Expr:
         return self.min(self.max(x, lo), hi)
 
     def sqrt(self, x: Operand) -> Expr:
-        return self.call(Op.SQRT, x)
+        return self.add(Op.SQRT, self.lift(x))
 
     def abs(self, x: Operand) -> Expr:
-        return self.call(Op.ABS, x)
+        return self.add(Op.ABS, self.lift(x))
 
     def length(self, x: Expr) -> Expr:
         return self.add(Op.LENGTH, x)

@@ -18,12 +18,12 @@ _IN_ORDER = tuple(tuple(range(size)) for size in range(5))
 _NEG, _SWIZZLE, _VECTOR, _BOOL = Op.NEG, Op.SWIZZLE, Op.VECTOR, Type.BOOL  # looked up once: this is asked often
 
 
-def _is_zero(e: Expr) -> bool:
-    return e.is_constant and not any(e.numbers)
+def _is_zero(constant: Expr) -> bool:
+    return not any(constant.numbers)
 
 
-def _is_all(e: Expr, value: float) -> bool:
-    return e.is_constant and e.type is not _BOOL and e.numbers.count(value) == len(e.numbers)
+def _is_all(constant: Expr, value: float) -> bool:
+    return constant.type is not _BOOL and constant.numbers.count(value) == len(constant.numbers)
 
 
 def _zeros(graph: FieldGraph, *like: Expr) -> Expr:
@@ -32,18 +32,18 @@ def _zeros(graph: FieldGraph, *like: Expr) -> Expr:
 
 def _simplify_add(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
     a, b = args
-    if _is_zero(b) and a.type.size >= b.type.size:
+    if b.is_constant and _is_zero(b) and a.type.size >= b.type.size:
         return a
-    if _is_zero(a) and b.type.size >= a.type.size:
+    if a.is_constant and _is_zero(a) and b.type.size >= a.type.size:
         return b
     return graph.add(Op.SUB, a, b.args[0]) if b.op is _NEG else None
 
 
 def _simplify_sub(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
     a, b = args
-    if _is_zero(b) and a.type.size >= b.type.size:
+    if b.is_constant and _is_zero(b) and a.type.size >= b.type.size:
         return a
-    if _is_zero(a) and b.type.size >= a.type.size:
+    if a.is_constant and _is_zero(a) and b.type.size >= a.type.size:
         return graph.add(Op.NEG, b)
     if a is b:
         return _zeros(graph, a)
@@ -52,29 +52,30 @@ def _simplify_sub(graph: FieldGraph, args: Arguments, value: object) -> Expr | N
 
 def _simplify_mul(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
     a, b = args
-    if _is_zero(a) or _is_zero(b):
+    if not (a.is_constant or b.is_constant):
+        return None
+    factor, other = (b, a) if b.is_constant else (a, b)  # one of them is none, or it would be folded
+    if _is_zero(factor):
         return _zeros(graph, a, b)
-    for factor, other in ((b, a), (a, b)):
-        if factor.is_constant and other.type.size >= factor.type.size:
-            if _is_all(factor, 1.0):
-                return other
-            if _is_all(factor, -1.0):
-                return graph.add(_NEG, other)
-    return None
+    if other.type.size < factor.type.size:
+        return None
+    if _is_all(factor, 1.0):
+        return other
+    return graph.add(_NEG, other) if _is_all(factor, -1.0) else None
 
 
 def _simplify_div(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
     a, b = args
-    if _is_zero(a):
+    if a.is_constant and _is_zero(a):
         return _zeros(graph, a, b)
-    if a.type.size >= b.type.size and _is_all(b, 1.0):
+    if b.is_constant and a.type.size >= b.type.size and _is_all(b, 1.0):
         return a
-    return graph.add(Op.NEG, a) if a.type.size >= b.type.size and _is_all(b, -1.0) else None
+    return graph.add(Op.NEG, a) if b.is_constant and a.type.size >= b.type.size and _is_all(b, -1.0) else None
 
 
 def _simplify_pow(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
     a, b = args
-    return a if a.type.size >= b.type.size and _is_all(b, 1.0) else None
+    return a if b.is_constant and a.type.size >= b.type.size and _is_all(b, 1.0) else None
 
 
 def _simplify_neg(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
