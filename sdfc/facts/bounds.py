@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import assert_never
 
 from sdfc.facts.box import Box, everything, hull, meeting, nothing
+from sdfc.facts.claimed import claimed_corners
 from sdfc.facts.enclosure import enclosing
 from sdfc.facts.ranges import Ranges
 from sdfc.field.graph import Expr, FieldGraph, Type
@@ -144,6 +145,9 @@ class Bounds:
         return enclosing(lower(node, p), node.dimension, level, self._ranges)
 
     def _claimed(self, node: Apply, level: float, boxes: list[Box]) -> Box:
+        corners = claimed_corners(node, level, self.values)
+        if corners is not None:
+            return _box_of(*corners)
         bounds = node.definition.claims.bounds
         assert bounds is not None
         lo, hi = bounds(node.environment, child_facts(self.values, node, boxes), self.values.constant(level))

@@ -32,6 +32,14 @@ _IDENTITY: Numbers = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0
 NOWHERE = Fixed(_IDENTITY, _IDENTITY)
 
 
+def is_nowhere(motion: Motion) -> bool:
+    match motion:
+        case Fixed():
+            return motion is NOWHERE or (motion.forward == _IDENTITY and motion.inverse == _IDENTITY)
+        case Live():
+            return False
+
+
 class Motions:
     """Composes motions, equal ones once; makes matrices of one field graph. Most maps turn alike, if at all: what is
     made of a linear part is remembered."""

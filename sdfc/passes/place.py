@@ -6,7 +6,7 @@ from typing import assert_never
 
 from sdfc.facts.pointwise import is_pointwise
 from sdfc.field.graph import FieldGraph
-from sdfc.passes.motion import NOWHERE, Motion, Motions
+from sdfc.passes.motion import NOWHERE, Motion, Motions, is_nowhere
 from sdfc.passes.rewrite import descend
 from sdfc.shape.definition import Argument
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, ShapeGraph, Union
@@ -79,7 +79,7 @@ class _Placer:
         return self._scale(shape, motion) if is_pointwise(shape, self._values) else None
 
     def _moved(self, inner: Shape, motion: Motion) -> Shape:
-        if motion is NOWHERE:
+        if is_nowhere(motion):
             return inner
         forward, inverse = self._motions.matrices(motion)
         return self._graph.affine(forward, inverse, inner, inner.span)

@@ -45,6 +45,9 @@ _OURS = frozenset(
     {"bounds", "solid", "live", "joined", "near", "far", "ahead"}
 )  # generated names begin so, and end in a number
 
+# by name: no more than there are, and the same in every scene
+_STANDARD_INTERVALS: dict[str, int] = {}
+
 
 @dataclass(frozen=True, slots=True)
 class Leaf:
@@ -116,7 +119,6 @@ class Prover:
         self._boxes = 0
         self._pieces = 0
         self._leaves: list[Leaf] = []
-        self._interval_counts: dict[int, int] = {}
 
     @property
     def parts(self) -> tuple[Part, ...]:
@@ -302,10 +304,12 @@ class Prover:
 
     def _intervals(self, shape: Apply) -> int:
         """How many intervals the primitive's ray claim gives: the same for all uses of the definition."""
-        key = id(shape.definition)
-        if key not in self._interval_counts:
-            self._interval_counts[key] = self._counted(shape)
-        return self._interval_counts[key]
+        definition = shape.definition
+        if not definition.is_standard:
+            return self._counted(shape)
+        if definition.name not in _STANDARD_INTERVALS:
+            _STANDARD_INTERVALS[definition.name] = self._counted(shape)
+        return _STANDARD_INTERVALS[definition.name]
 
     def _counted(self, shape: Apply) -> int:
         """In the form that is printed, which is remembered until then."""
