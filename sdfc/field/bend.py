@@ -5,6 +5,7 @@ Bounds of second derivatives by intervals, over boxes of points and cells of dir
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Hashable, Mapping, Sequence
 
 import numpy as np
@@ -23,6 +24,7 @@ from sdfc.field.order import evaluation_order
 BOXES = 512  # how many boxes `bend_bounds` looks at
 CELLS = 4  # its directions: half of a cube's faces in CELLS x CELLS cells
 AT_ONCE = 64  # boxes that are cut in one go
+_NEAR = 2.0**-20  # of the box: what is infinite so near to a corner of the cuts, cuts do not mend
 _CUTS, _GAIN = 6, 0.9  # so many cuts are to bring this, or there are no more: half the bend saves a fifth of the steps
 
 
@@ -101,6 +103,8 @@ def bend_bounds(
     def search() -> list[float]:
         evaluator = BendEvaluator(root, convex)
         cells = _Cells(evaluator, pieces, np.array(lo, float), np.array(hi, float), _anywhere())
+        if not np.isfinite(cells.bounds).any() and cells.is_vain():
+            return [np.inf] * len(pieces)
         while cells.seen < boxes and not np.isfinite(cells.bounds).all():
             cells.cut()
         if np.isfinite(cells.bounds).all():  # it is worth the dearer look, by directions
@@ -170,6 +174,16 @@ class _Cells:
         self._owner = np.concatenate([self._owner[keep], owner])
         self.bounds = np.concatenate([self.bounds[keep], fresh])
         self.seen += fresh.size
+
+    def is_vain(self) -> bool:
+        """Whether all are infinite right beside the middle, where the hub of a ring is: however boxes are cut, one of
+        them keeps that."""
+        sides = np.array(list(itertools.product((-1.0, 1.0), repeat=self._lo.shape[0]))).T
+        middle, near = 0.5 * (self._lo + self._hi), _NEAR * (self._hi - self._lo)
+        ends = middle[:, :, None], (middle[:, :, None] + near[:, :, None] * sides[:, None, :])
+        lo, hi = (pick(*ends).reshape(self._lo.shape[0], -1) for pick in (np.minimum, np.maximum))
+        found = self._bend(lo, hi, np.repeat(self._owner, sides.shape[1]))
+        return bool(np.isinf(found).reshape(self._count, -1).any(axis=1).all())
 
     def _bend(self, lo: Array, hi: Array, owner: NDArray[np.int64]) -> Array:
         each, count = self._cells.lo.shape[1], lo.shape[1]

@@ -12,7 +12,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sdfc.field.graph import LEAVES, Expr, Op
+from sdfc.field.graph import LEAVES, Expr, Op, topological
 from sdfc.field.interval_jumps import JUMPS, Sides
 from sdfc.field.interval_rules import (
     RULES,
@@ -218,6 +218,28 @@ class IntervalEvaluator:
                 for finished in self._last_use[position]:
                     del values[finished], slopes[finished]
             return settled(values[self.root.id]), slopes[self.root.id]
+
+
+class ConstantBounds:
+    """Bounds of expressions without inputs, over one range of each param; what they share is computed once."""
+
+    def __init__(self, params: Parameters) -> None:
+        self._params = params
+        self._found: dict[Expr, Interval] = {}
+
+    def __call__(self, root: Expr) -> Interval:
+        """Of the root's components, (k,) each end."""
+        nodes = topological([root], lambda node: () if node in self._found else node.args)
+        fresh = [node for node in nodes if node not in self._found]
+        values = _parameters(fresh, self._params)
+        with np.errstate(all="ignore"):
+            for node in fresh:
+                if node.op in LEAVES:
+                    self._found[node] = _LEAF[node.op](node, {}, values)
+                else:
+                    self._found[node] = RULES[node.op](node, [self._found[a] for a in node.args])
+        lo, hi = settled(self._found[root])
+        return Interval(lo.ravel(), hi.ravel())
 
 
 def _last_uses(nodes: Sequence[Expr]) -> list[list[int]]:
