@@ -9,7 +9,7 @@ from functools import cache, lru_cache
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from sdfc.field.graph import FieldGraph
+from sdfc.field.graph import Expr, FieldGraph
 from sdfc.glsl.body import Body
 from sdfc.glsl.distance import DistanceWriter
 from sdfc.glsl.expression import literal, print_function, type_name
@@ -241,13 +241,13 @@ class Assembly:
 
     def _live_lines(self) -> list[str]:
         lines: list[str] = []
-        done: dict[int, str] = {}
+        done: dict[Expr, str] = {}
         for name, expr in self._live.values:
             body = Body(Done(done), 0)
             text = body.text(expr)
             scoped = [*body.lines, f"{name} = {text};"]
             lines += scoped if len(scoped) == 1 else ["{", *(f"    {line}" for line in scoped), "}"]
-            done[expr.id] = name
+            done[expr] = name
         return lines
 
 

@@ -8,7 +8,7 @@ calls of min, and compiles the chain to better code than a tree of temporaries (
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import TypeAlias
 
@@ -79,12 +79,11 @@ class Printer:
         self._scope = Names() if scope is None else scope
         self._called = called
 
-    def statements(self, roots: Iterable[Expr]) -> tuple[list[str], list[str]]:
+    def statements(self, roots: Sequence[Expr]) -> tuple[list[str], list[str]]:
         """Declarations of locals, and one text for each root.
 
         A text may be any expression: bracket it before putting it beside an operator.
         """
-        roots = list(roots)
         block = _Block(self._names, self._scope, roots, self._called)
         return block.lines, [block.text_of(root).text for root in roots]
 

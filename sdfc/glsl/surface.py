@@ -156,7 +156,7 @@ class SurfaceWriter:
 
     def _is_computed(self, value: Expr) -> bool:
         """Whether its text takes statements, where there is no main that could begin with them."""
-        if self._live.hoists:
+        if not self._live.shares:
             return False
         body = Body(self._live)
         body.text(value)
