@@ -165,7 +165,7 @@ class Assembly:
         }
         if self._lit and surface is not None:
             context |= self._lighting(surface.properties)
-        context["functions"] = "\n".join(print_function(f) for f in self._functions.all)
+        context["functions"] = "\n".join([f.text for f in self._functions.all])
         context["live"] = [Variable(type_name(e.type), n) for n, e in self._live.values]
         context["live_lines"] = self._live_lines()
         return context
@@ -204,7 +204,7 @@ class Assembly:
         needed |= {"point_falloff": len(suns) < len(lights), "occlusion_weight": not self._plan.is_convex}
         needed |= {"ambient": True, "transmit": transmission}
         needed |= dict.fromkeys(("tone_map", "encode_srgb"), self._entry == "picture")
-        functions = [print_function(FUNCTIONS[name](self._graph), name) for name, wanted in needed.items() if wanted]
+        functions = [_shading_function(name) for name, wanted in needed.items() if wanted]
         return {
             "shading_functions": "\n".join(functions),
             "up": _vector(self._setting.up),
@@ -256,6 +256,12 @@ def _with_needed_library(text: str) -> str:
     before, library, after = text.split(_MARK)
     asked_for = set(_WORD.findall(_COMMENT.sub("", before + after)))
     return f"{before}{joined(pruned(_items(library), sorted(asked_for)))}{after}"
+
+
+@cache
+def _shading_function(name: str) -> str:
+    """The same in every scene."""
+    return print_function(FUNCTIONS[name](FieldGraph()), name)
 
 
 @lru_cache(maxsize=64)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TypeAlias
 
@@ -18,7 +19,7 @@ from sdfc.field.order import evaluation_order
 from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose, leaf
 from sdfc.glsl.names import Names, identifier, literal, param_name, type_name
 
-__all__ = ["Printer", "literal", "print_function", "type_name"]
+__all__ = ["Printed", "Printer", "literal", "print_function", "printed", "type_name"]
 
 NamesOf: TypeAlias = Callable[[Expr], str | None]
 
@@ -28,23 +29,36 @@ CHAIN = 4  # so many steps of min and max in a row become updates of one variabl
 LARGEST_PRODUCT = 64  # integer powers up to this are written as products
 
 
-def print_function(function: Function, name: str | None = None) -> str:
-    """The GLSL definition of a function, under its doc string as a comment.
+@dataclass(frozen=True, slots=True)
+class Printed:
+    """A function's definition in GLSL, but for its name and what is said of it."""
 
-    Parameters keep their names where GLSL allows it and no uniform has the same. `name` is taken as it is.
-    """
-    nodes = list(topological([function.result]))
-    scope = Names(param_name(str(n.value)) for n in nodes if n.op is Op.PARAM)
+    type: str
+    parameters: str
+    lines: tuple[str, ...]
+
+    def text(self, name: str, doc: str = "") -> str:
+        """The definition, under `doc` as a comment."""
+        said = [f"// {line}".rstrip().rstrip("\\") for line in doc.splitlines()]
+        return "\n".join([*said, f"{self.type} {name}({self.parameters}) {{", *self.lines, "}"]) + "\n"
+
+
+def printed(function: Function) -> Printed:
+    """A function in GLSL. Parameters keep their names where GLSL allows it and no uniform has the same."""
+    leaves = [n for n in topological([function.result]) if not n.args]
+    scope = Names(param_name(str(n.value)) for n in leaves if n.op is Op.PARAM)
     renamed = {name: scope.fresh(name) for name, _ in function.parameters}
-    own = {name for name, _ in function.parameters}
-    assert all(n.value in own for n in nodes if n.op is Op.INPUT), f"{function.name} reads what is no parameter of it"
-    printer = Printer(lambda e: renamed[str(e.value)] if e.op is Op.INPUT else None, scope, function.names)
-    lines, (result,) = printer.statements([function.result])
+    given = {n: renamed.get(str(n.value)) for n in leaves if n.op is Op.INPUT}
+    assert None not in given.values(), f"{function.name} reads what is no parameter of it"
+    lines, (result,) = Printer(given.get, scope, function.names).statements([function.result])
     parameters = ", ".join(f"{type_name(type_)} {renamed[name]}" for name, type_ in function.parameters)
-    doc = [f"// {line}".rstrip().rstrip("\\") for line in function.doc.splitlines()]
-    head = f"{type_name(function.result.type)} {name or identifier(function.name)}({parameters}) {{"
-    body = [f"    {line}" for line in (*lines, f"return {result};")]
-    return "\n".join([*doc, head, *body, "}"]) + "\n"
+    body = tuple(f"    {line}" for line in (*lines, f"return {result};"))
+    return Printed(type_name(function.result.type), parameters, body)
+
+
+def print_function(function: Function, name: str | None = None) -> str:
+    """The GLSL definition of a function, under its doc string as a comment. `name` is taken as it is."""
+    return printed(function).text(name or identifier(function.name), function.doc)
 
 
 # members of enums are dear to look up, and these are asked for at every node
