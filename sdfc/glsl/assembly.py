@@ -47,7 +47,7 @@ VERSION = "450 core"
 WEB_VERSION = "300 es"
 _ALONE = ("picture", "inspect")  # entries whose camera is in uniforms
 _MARK = "\x1f"  # before and after the library in a text that is not finished
-_WORD = re.compile(r"[A-Za-z_]\w*")
+_BETWEEN_WORDS = {code: " " for code in range(128) if re.fullmatch(r"\W", chr(code))}
 _COMMENT = re.compile(r"//[^\n]*")
 
 
@@ -116,8 +116,10 @@ class Assembly:
         params = _read(self._params(), text)
         if len(params) < len(self._setting.params):
             text = template.render(context | {"params": params})
-        text = "\n".join(line.rstrip() for line in _with_needed_library(text).split("\n"))
-        return re.sub(r"\n{3,}", "\n\n", text)
+        text = "\n".join([line.rstrip() for line in _with_needed_library(text).split("\n")])
+        while "\n\n\n" in text:
+            text = text.replace("\n\n\n", "\n\n")
+        return text
 
     def _context(self) -> dict[str, object]:
         plan, tracer = self._plan, self._plan.tracer
@@ -254,7 +256,7 @@ class Assembly:
 def _with_needed_library(text: str) -> str:
     """The text with only that of the library, between the marks, which the rest asks for."""
     before, library, after = text.split(_MARK)
-    asked_for = set(_WORD.findall(_COMMENT.sub("", before + after)))
+    asked_for = set(_COMMENT.sub("", before + after).translate(_BETWEEN_WORDS).split())
     return f"{before}{joined(pruned(_items(library), sorted(asked_for)))}{after}"
 
 
@@ -272,7 +274,8 @@ def _items(library: str) -> list[Item]:
 
 def _read(params: list[Variable], text: str) -> list[Variable]:
     """The params that a shader reads: those named there besides their declaration and the line that sets them."""
-    return [p for p in params if len(re.findall(rf"\b{p.name}\b", text)) > 2]
+    # the word, by what is found fast: its letters, then what is around them
+    return [p for p in params if len(re.findall(rf"{p.name}(?<!\w{p.name})(?!\w)", text)) > 2]
 
 
 def _range(param: Param) -> str:

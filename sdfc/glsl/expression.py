@@ -81,7 +81,8 @@ def local_name(node: Expr) -> str:
 class Printer:
     """Prints expressions for one scope of GLSL; the locals of later calls never repeat the names of earlier ones.
 
-    `names` gives the text of a node that is there already, or None; what is below such a node is not printed. `scope`
+    `names` gives the text of a node that is there already, or None; what is below such a node is not printed. Constants
+    are not asked about. `scope`
     holds the identifiers that locals must not take; names given for nodes are added to it. What is `called` something
     is a local of that name.
     """
@@ -98,6 +99,8 @@ class Printer:
 
         A text may be any expression: bracket it before putting it beside an operator.
         """
+        if all([root.op is _CONST for root in roots]):  # as most arguments of calls are
+            return [], [leaf(root).text for root in roots]
         block = _Block(self._names, self._scope, roots, self._called)
         return block.lines, [block.text_of(root).text for root in roots]
 
@@ -118,8 +121,7 @@ class _Block:
         self._uses = _count_uses(inner, given, roots)
         if self._asks_for_no_local(inner) and self._is_all_inline(inner):
             return
-        among = set(inner)
-        order = [n for n in evaluation_order(roots, lambda n: n.args if n in among else ()) if n in among]
+        order = [n for n in _in_order(roots, given) if n in self._uses]
         self._spine = _spines(order, self._uses)
         for node in order:
             self._print(node)
@@ -127,7 +129,7 @@ class _Block:
     def _name_leaves(self, names: NamesOf, roots: Sequence[Expr]) -> tuple[list[Expr], list[Expr]]:
         """Before any local is named: the texts of what is there already.
 
-        The nodes that are left to print, arguments before users; and the others that have arguments.
+        The nodes that are left to print, arguments before users; and those that are given although they have arguments.
         """
         texts, reserve = self._texts, self._scope.reserve
         inner: list[Expr] = []
@@ -141,7 +143,8 @@ class _Block:
                     is_done[node] = True
                     inner.append(node)
                 continue
-            given = names(node)
+            is_constant = node.op is _CONST
+            given = None if is_constant else names(node)
             if given is None and node.args:
                 is_done[node] = False
                 stack.append(node)
@@ -152,8 +155,9 @@ class _Block:
                 texts[node] = text = leaf(node)
             else:
                 texts[node] = text = _given_text(given)
-                given_nodes.append(node)
-            if node.op is not _CONST:
+                if node.args:
+                    given_nodes.append(node)
+            if not is_constant:
                 reserve(text.text.partition(".")[0])
         return inner, given_nodes
 
@@ -275,6 +279,14 @@ def _given_text(given: str) -> Text:
     if given.isidentifier() or _MEMBER.fullmatch(given):
         return Text(given, is_name=True)
     return Text(given, Level.ATOM if _PLAIN_CALL.fullmatch(given) else Level.CHOICE)
+
+
+def _in_order(roots: Sequence[Expr], given: Sequence[Expr]) -> list[Expr]:
+    """The order of evaluation; of what is given, nothing below is computed."""
+    if not given:
+        return evaluation_order(roots)
+    without = set(given)
+    return evaluation_order(roots, lambda node: () if node in without else node.args)
 
 
 def _count_uses(inner: Sequence[Expr], given: Sequence[Expr], roots: Sequence[Expr]) -> dict[Expr, int]:
