@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from enum import IntEnum
 from functools import lru_cache
+from itertools import product
 from typing import NamedTuple, TypeAlias
 
 from sdfc.field.graph import Expr, Op, Type
@@ -77,6 +78,11 @@ _CALLS = {
     Op.MOD: "mod",
     Op.POW: "pow",
     Op.ATAN2: "atan",
+}
+
+# the letters of a swizzle, by its indices
+_LETTERS: dict[tuple[float, ...], str] = {
+    indices: "".join(["xyzw"[i] for i in indices]) for size in (1, 2, 3, 4) for indices in product(range(4), repeat=size)
 }
 
 # GLSL takes (vector, float) for these, but no (float, vector); for the others of two operands both must be alike.
@@ -172,7 +178,7 @@ def _component(e: Expr, text_of: Lookup) -> tuple[Text | None, str]:
 
 def _letters(swizzle: Expr) -> str:
     assert isinstance(swizzle.value, tuple)
-    return "".join("xyzw"[int(i)] for i in swizzle.value)
+    return _LETTERS[swizzle.value]
 
 
 def _swizzle(node: Expr, text_of: Lookup, depth: int) -> Text:
