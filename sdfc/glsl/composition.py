@@ -82,7 +82,9 @@ _CALLS = {
 
 # the letters of a swizzle, by its indices
 _LETTERS: dict[tuple[float, ...], str] = {
-    indices: "".join(["xyzw"[i] for i in indices]) for size in (1, 2, 3, 4) for indices in product(range(4), repeat=size)
+    indices: "".join(["xyzw"[i] for i in indices])
+    for size in (1, 2, 3, 4)
+    for indices in product(range(4), repeat=size)
 }
 
 # GLSL takes (vector, float) for these, but no (float, vector); for the others of two operands both must be alike.

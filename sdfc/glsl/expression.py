@@ -17,15 +17,13 @@ from sdfc.field.function import Function
 from sdfc.field.graph import Expr, Op, topological
 from sdfc.field.order import evaluation_order
 from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose, leaf
+from sdfc.glsl.in_place import CHAIN, DEPTH, WIDTH, InPlace, NeedsLocalError
 from sdfc.glsl.names import Names, identifier, literal, param_name, type_name
 
-__all__ = ["Printed", "Printer", "literal", "print_function", "printed", "type_name"]
+__all__ = ["DEPTH", "WIDTH", "Printed", "Printer", "literal", "print_function", "printed", "type_name"]
 
 NamesOf: TypeAlias = Callable[[Expr], str | None]
 
-WIDTH = 90  # characters of one expression
-DEPTH = 8  # operations nested in one expression
-CHAIN = 4  # so many steps of min and max in a row become updates of one variable
 LARGEST_PRODUCT = 64  # integer powers up to this are written as products
 
 
@@ -82,9 +80,8 @@ class Printer:
     """Prints expressions for one scope of GLSL; the locals of later calls never repeat the names of earlier ones.
 
     `names` gives the text of a node that is there already, or None; what is below such a node is not printed. Constants
-    are not asked about. `scope`
-    holds the identifiers that locals must not take; names given for nodes are added to it. What is `called` something
-    is a local of that name.
+    are not asked about. `scope` holds the identifiers that locals must not take; names given for nodes are added to it.
+    What is `called` something is a local of that name.
     """
 
     def __init__(
@@ -99,85 +96,74 @@ class Printer:
 
         A text may be any expression: bracket it before putting it beside an operator.
         """
-        if all([root.op is _CONST for root in roots]):  # as most arguments of calls are
-            return [], [leaf(root).text for root in roots]
-        block = _Block(self._names, self._scope, roots, self._called)
+        if not self._called:
+            try:
+                return [], InPlace(self._there).texts(roots)
+            except NeedsLocalError:
+                pass
+        block = _Block(self._there, self._scope, roots, self._called)
         return block.lines, [block.text_of(root).text for root in roots]
+
+    def _there(self, node: Expr) -> Text | None:
+        """The text of a leaf, and of what is there already."""
+        if node.op is _CONST:
+            return leaf(node)
+        given = self._names(node)
+        if given is None and node.args:
+            return None
+        text = leaf(node) if given is None else _given_text(given)
+        self._scope.reserve(text.text.partition(".")[0])
+        return text
 
 
 class _Block:
     """The printing of some roots: every node in order of evaluation, its text inline or a local's name."""
 
-    def __init__(self, names: NamesOf, scope: Names, roots: Sequence[Expr], called: Mapping[Expr, str]) -> None:
+    def __init__(
+        self, there: Callable[[Expr], Text | None], scope: Names, roots: Sequence[Expr], called: Mapping[Expr, str]
+    ) -> None:
         self.lines: list[str] = []
         self._called = called
         self._scope = scope
         self._texts: dict[Expr, Text] = {}
         self.text_of = self._texts.__getitem__
         self._squares: dict[tuple[Expr, int], str] = {}
-        inner, given = self._name_leaves(names, roots)
-        if not inner:
-            return
+        inner, given = self._name_leaves(there, roots)
         self._uses = _count_uses(inner, given, roots)
-        if self._asks_for_no_local(inner) and self._is_all_inline(inner):
-            return
         order = [n for n in _in_order(roots, given) if n in self._uses]
         self._spine = _spines(order, self._uses)
         for node in order:
             self._print(node)
 
-    def _name_leaves(self, names: NamesOf, roots: Sequence[Expr]) -> tuple[list[Expr], list[Expr]]:
+    def _name_leaves(
+        self, there: Callable[[Expr], Text | None], roots: Sequence[Expr]
+    ) -> tuple[list[Expr], list[Expr]]:
         """Before any local is named: the texts of what is there already.
 
         The nodes that are left to print, arguments before users; and those that are given although they have arguments.
         """
-        texts, reserve = self._texts, self._scope.reserve
         inner: list[Expr] = []
-        given_nodes: list[Expr] = []
-        is_done: dict[Expr, bool] = {}  # of what has been opened: whether it is among the inner nodes
+        given: list[Expr] = []
+        is_done: dict[Expr, bool] = {}  # of what is left to print: whether its arguments are among it
         stack = list(reversed(roots))
         while stack:
             node = stack.pop()
-            if node in is_done:
-                if not is_done[node]:
-                    is_done[node] = True
-                    inner.append(node)
+            if node in self._texts:
                 continue
-            is_constant = node.op is _CONST
-            given = None if is_constant else names(node)
-            if given is None and node.args:
-                is_done[node] = False
-                stack.append(node)
-                stack.extend(reversed(node.args))
-                continue
-            is_done[node] = True
-            if given is None:
-                texts[node] = text = leaf(node)
-            else:
-                texts[node] = text = _given_text(given)
+            if node not in is_done:
+                text = there(node)
+                if text is None:
+                    is_done[node] = False
+                    stack.append(node)
+                    stack.extend(reversed(node.args))
+                    continue
+                self._texts[node] = text
                 if node.args:
-                    given_nodes.append(node)
-            if not is_constant:
-                reserve(text.text.partition(".")[0])
-        return inner, given_nodes
-
-    def _asks_for_no_local(self, inner: Sequence[Expr]) -> bool:
-        """Whether only what gets too long can need one, so that no order of evaluation is better than another."""
-        extremes = 0
-        for node in inner:
-            op = node.op
-            if op is _POW or (self._uses[node] > 1 and op is not _SWIZZLE) or node in self._called:
-                return False
-            extremes += op in _EXTREMES
-        return extremes < CHAIN
-
-    def _is_all_inline(self, inner: Sequence[Expr]) -> bool:
-        """Writes every node in place, where nothing gets too long."""
-        for node in inner:
-            self._texts[node] = text = self._composed(node)
-            if len(text.text) > WIDTH or text.depth > DEPTH:
-                return False
-        return True
+                    given.append(node)
+            elif not is_done[node]:
+                is_done[node] = True
+                inner.append(node)
+        return inner, given
 
     def _print(self, node: Expr) -> None:
         text = self._composed(node)
