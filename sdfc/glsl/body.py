@@ -25,6 +25,7 @@ class Body:
     def __init__(self, live: Values, indent: int = 1) -> None:
         self.lines: list[str] = []
         self._live = live
+        self._shares = live.shares
         self._indent = indent
         self._local: dict[Expr, str] = {}
         self._once: set[str] = set()
@@ -33,7 +34,7 @@ class Body:
 
     def _name(self, expr: Expr) -> str | None:
         name = self._local.get(expr) or self._live(expr)
-        if name is None and self._live.shares and self._live.is_shared(expr):
+        if name is None and self._shares and self._live.is_shared(expr):
             return self._share(expr)
         return name
 

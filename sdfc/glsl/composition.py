@@ -96,8 +96,12 @@ def compose(node: Expr, text_of: Lookup) -> Text:
     """The GLSL of a node; the texts of its arguments are asked of `text_of`."""
     if not node.args:
         return leaf(node)
-    depth = 1 + max([text_of(a).depth for a in node.args])
-    return _WRITERS.get(node.op, _call)(node, text_of, depth)
+    return written(node, text_of, 1 + max([text_of(a).depth for a in node.args]))
+
+
+def written(node: Expr, text_of: Lookup, depth: int) -> Text:
+    """The GLSL of a node that has arguments, told how deep it nests."""
+    return _WRITERS[node.op](node, text_of, depth)
 
 
 def leaf(node: Expr) -> Text:
@@ -239,12 +243,13 @@ def _call(node: Expr, text_of: Lookup, depth: int) -> Text:
     return Text(f"{_CALLS[node.op]}({', '.join(texts)})", depth=depth)
 
 
-_WRITERS: dict[Op, Callable[[Expr, Lookup, int], Text]] = {  # of the others: _call
+_WRITERS: dict[Op, Callable[[Expr, Lookup, int], Text]] = {
+    **dict.fromkeys(_CALLS, _call),
+    **dict.fromkeys(_INFIX, _infix),
     Op.VECTOR: _vector,
     Op.SWIZZLE: _swizzle,
     Op.NEG: _negation,
     Op.NOT: _not,
     Op.ROUND: _rounded,
     Op.SELECT: _choice,
-    **dict.fromkeys(_INFIX, _infix),
 }

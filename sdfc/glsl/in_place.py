@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from sdfc.field.graph import Expr, Op
-from sdfc.glsl.composition import Text, clamp, clamp_limits, compose
+from sdfc.glsl.composition import Text, clamp, clamp_limits, written
 
 WIDTH = 90  # characters of one expression
 DEPTH = 8  # operations nested in one expression
 CHAIN = 4  # so many steps of min and max in a row become updates of one variable
 
+_ANY = 0  # nobody asks how deep a text nests: there is room for so many operations below one another, and no more
 _MIN, _MAX, _POW = Op.MIN, Op.MAX, Op.POW  # members of enums are dear to look up
 
 
@@ -62,7 +63,7 @@ class InPlace:
         if limits is not None and not self._texts[node.args[0]].is_name:
             text = clamp(limits, node.type, self._text_of)
         else:
-            text = compose(node, self._text_of)
-        if len(text.text) > WIDTH or text.depth > DEPTH:
+            text = written(node, self._text_of, _ANY)
+        if len(text.text) > WIDTH:
             raise NeedsLocalError
         return text
