@@ -48,7 +48,7 @@ def printed(function: Function) -> Printed:
     renamed = {name: scope.fresh(name) for name, _ in function.parameters}
     given = {n: renamed.get(str(n.value)) for n in leaves if n.op is Op.INPUT}
     assert None not in given.values(), f"{function.name} reads what is no parameter of it"
-    lines, (result,) = Printer(given.get, scope, function.names).statements([function.result])
+    lines, (result,) = Printer(given.get, scope).block([function.result], function.names)
     parameters = ", ".join(f"{type_name(type_)} {renamed[name]}" for name, type_ in function.parameters)
     body = tuple(f"    {line}" for line in (*lines, f"return {result};"))
     return Printed(type_name(function.result.type), parameters, body)
@@ -64,7 +64,6 @@ _CONST, _VECTOR, _SWIZZLE, _POW, _MIN = Op.CONST, Op.VECTOR, Op.SWIZZLE, Op.POW,
 _EXTREMES = frozenset({Op.MIN, Op.MAX})
 _MEMBER = re.compile(r"[A-Za-z_][\w.]*")
 _PLAIN_CALL = re.compile(r"\w+\([^()]*\)")
-_NOTHING: Mapping[Expr, str] = MappingProxyType({})
 
 
 def _no_names(_: Expr) -> None:
@@ -81,27 +80,27 @@ class Printer:
 
     `names` gives the text of a node that is there already, or None; what is below such a node is not printed. Constants
     are not asked about. `scope` holds the identifiers that locals must not take; names given for nodes are added to it.
-    What is `called` something is a local of that name.
     """
 
-    def __init__(
-        self, names: NamesOf = _no_names, scope: Names | None = None, called: Mapping[Expr, str] = _NOTHING
-    ) -> None:
+    def __init__(self, names: NamesOf = _no_names, scope: Names | None = None) -> None:
         self._names = names
         self._scope = Names() if scope is None else scope
-        self._called = called
 
     def statements(self, roots: Sequence[Expr]) -> tuple[list[str], list[str]]:
         """Declarations of locals, and one text for each root.
 
         A text may be any expression: bracket it before putting it beside an operator.
         """
-        if not self._called:
-            try:
-                return [], InPlace(self._there).texts(roots)
-            except NeedsLocalError:
-                pass
-        block = _Block(self._there, self._scope, roots, self._called)
+        try:
+            return [], InPlace(self._there).texts(roots)
+        except NeedsLocalError:
+            return self.block(roots)
+
+    def block(
+        self, roots: Sequence[Expr], called: Mapping[Expr, str] = MappingProxyType({})
+    ) -> tuple[list[str], list[str]]:
+        """The same, sooner where there are locals most likely. What is `called` something is a local of that name."""
+        block = _Block(self._there, self._scope, roots, called)
         return block.lines, [block.text_of(root).text for root in roots]
 
     def _there(self, node: Expr) -> Text | None:
