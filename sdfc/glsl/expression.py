@@ -14,11 +14,11 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from sdfc.field.function import Function
-from sdfc.field.graph import Expr, Op, topological
+from sdfc.field.graph import Expr, Op, params_of
 from sdfc.field.order import evaluation_order
 from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose, leaf
 from sdfc.glsl.in_place import CHAIN, DEPTH, WIDTH, InPlace, NeedsLocalError
-from sdfc.glsl.names import Names, identifier, literal, param_name, type_name
+from sdfc.glsl.names import PARAM_PREFIX, Names, identifier, literal, param_name, type_name
 
 __all__ = ["DEPTH", "WIDTH", "Printed", "Printer", "literal", "print_function", "printed", "type_name"]
 
@@ -43,12 +43,18 @@ class Printed:
 
 def printed(function: Function) -> Printed:
     """A function in GLSL. Parameters keep their names where GLSL allows it and no uniform has the same."""
-    leaves = [n for n in topological([function.result]) if not n.args]
-    scope = Names(param_name(str(n.value)) for n in leaves if n.op is Op.PARAM)
+    scope = Names()
+    if any(identifier(name).startswith(PARAM_PREFIX) for name, _ in function.parameters):
+        scope = Names(map(param_name, params_of([function.result])))
     renamed = {name: scope.fresh(name) for name, _ in function.parameters}
-    given = {n: renamed.get(str(n.value)) for n in leaves if n.op is Op.INPUT}
-    assert None not in given.values(), f"{function.name} reads what is no parameter of it"
-    lines, (result,) = Printer(given.get, scope).block([function.result], function.names)
+
+    def name_of(node: Expr) -> str | None:
+        if node.op is not _INPUT:
+            return None
+        assert node.value in renamed, f"{function.name} reads what is no parameter of it"
+        return renamed[str(node.value)]
+
+    lines, (result,) = Printer(name_of, scope).block([function.result], function.names)
     parameters = ", ".join(f"{type_name(type_)} {renamed[name]}" for name, type_ in function.parameters)
     body = tuple(f"    {line}" for line in (*lines, f"return {result};"))
     return Printed(type_name(function.result.type), parameters, body)
@@ -60,7 +66,7 @@ def print_function(function: Function, name: str | None = None) -> str:
 
 
 # members of enums are dear to look up, and these are asked for at every node
-_CONST, _VECTOR, _SWIZZLE, _POW, _MIN = Op.CONST, Op.VECTOR, Op.SWIZZLE, Op.POW, Op.MIN
+_CONST, _INPUT, _VECTOR, _SWIZZLE, _POW, _MIN = Op.CONST, Op.INPUT, Op.VECTOR, Op.SWIZZLE, Op.POW, Op.MIN
 _EXTREMES = frozenset({Op.MIN, Op.MAX})
 _MEMBER = re.compile(r"[A-Za-z_][\w.]*")
 _PLAIN_CALL = re.compile(r"\w+\([^()]*\)")

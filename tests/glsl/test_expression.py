@@ -227,6 +227,11 @@ def test_a_parameter_gives_way_to_a_uniform_of_the_same_name() -> None:
     text = print_function(Function("sphere", (("p", Type.VEC3), ("radius", Type.FLOAT)), radius))
     assert text.splitlines()[0] == "float sphere(vec3 p, float radius) {"
     assert "length(p) - radius - param_radius" in text
+    text = print_function(Function("number", (("param_radius", Type.FLOAT),), graph.input("param_radius", Type.FLOAT)))
+    assert text == "float number(float param_radius) {\n    return param_radius;\n}\n"
+    both = graph.input("param_radius", Type.FLOAT) - graph.param("radius")
+    text = print_function(Function("number", (("param_radius", Type.FLOAT),), both))
+    assert text == "float number(float param_radius_2) {\n    return param_radius_2 - param_radius;\n}\n"
 
 
 def test_the_printer_uses_what_has_a_name() -> None:
