@@ -40,7 +40,7 @@ def main() -> None:
         "command": lambda: subprocess.run(command, check=True, capture_output=True),
     }
     for name, way in ways.items():
-        way()  # what is remembered between compilations: the grammar, the standard library
+        way()  # what is remembered between compilations: the grammar, the standard library, its functions in GLSL
         taken = [_timed(way) for _ in range(given.rounds)]
         wall, own = (statistics.median(times) for times in zip(*taken, strict=True))
         print(f"{name:16} {wall:7.1f} ms" + (f"  {own:7.1f} ms of CPU" if name != "command" else ""))
