@@ -109,6 +109,18 @@ class Workshop:
     library: Library
     own_unit: bool = True
     frame: Frame | None = None
+    is_placed: bool = False  # whether every transform is as far down as it may go
+
+    def placed(self, root: Shape) -> Shape:
+        if self.is_placed:
+            return root
+        self.is_placed = True
+        return place(root, self.scene.shapes, self.scene.values)
+
+    def pruned(self, root: Shape) -> Shape:
+        left = prune(root, self.scene.shapes, self.bounds)
+        self.is_placed = self.is_placed and left is root
+        return left
 
     def framed(self, root: Shape) -> Shape:
         self.frame = frame_of(root, self.bounds)
@@ -128,18 +140,18 @@ PASSES = (
     Pass("paint", "while `a - b` still tells which part is cut", lambda s, w: paint(s, w.scene.shapes)),
     Pass("fence", "the scene's size is asked for next", lambda s, w: fence(s, w.scene.shapes, w.bounds)),
     Pass("own_origin", "before transforms are composed: one more to compose", lambda s, w: w.framed(s)),
-    Pass("place", "leaves must be placed to be bounded", lambda s, w: place(s, w.scene.shapes, w.scene.values)),
+    Pass("place", "leaves must be placed to be bounded", lambda s, w: w.placed(s)),
     Pass(
         "negate",
         "step rules know leaves and their complements",
         lambda s, w: negate(s, w.scene.shapes, w.library.definition),
     ),
     Pass("bare", "what stands under no operation is known now", lambda s, w: bare(s, w.scene.shapes, w.scene.values)),
-    Pass("prune", "boxes are known now", lambda s, w: prune(s, w.scene.shapes, w.bounds)),
+    Pass("prune", "boxes are known now", lambda s, w: w.pruned(s)),
     Pass(
         "place again",
         "a stretched blend that turned out to be a union lets its transform through",
-        lambda s, w: place(s, w.scene.shapes, w.scene.values),
+        lambda s, w: w.placed(s),
     ),
     Pass("flatten again", "De Morgan and pruning made new nests", lambda s, w: flatten(s, w.scene.shapes)),
 )

@@ -6,7 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import assert_never
 
-from sdfc.facts.box import Box, everything, nothing
+from sdfc.facts.box import Box, everything, hull, meeting, nothing
+from sdfc.facts.claimed import claimed_corners
 from sdfc.facts.enclosure import enclosing
 from sdfc.facts.ranges import Ranges
 from sdfc.field.graph import Expr, FieldGraph, Type
@@ -26,33 +27,31 @@ class Bounds:
     def __init__(self, values: FieldGraph, ranges: Ranges) -> None:
         self.values = values
         self._ranges = ranges
-        self._boxes: dict[tuple[int, float], Box] = {}
+        self._boxes: dict[tuple[Shape, float], Box] = {}
         self._lowerings: dict[int, float] = {}
         self._stretches: dict[int, tuple[float, float]] = {}
 
     def box(self, shape: Shape, level: float = 0.0) -> Box:
         """A box that holds every point where the shape's field is `level` or less; of the shape's own dimension."""
-        stack: list[tuple[Shape, float]] = [(shape, level)]
-        opened: dict[tuple[int, float], tuple[Sequence[Shape], float]] = {}
-        while stack:
-            node, at = stack[-1]
-            key = (node.id, at)
-            if key in self._boxes:
-                stack.pop()
-            elif key in opened:
-                children, below = opened.pop(key)
-                self._boxes[key] = _usable(self._box(node, at, [self._boxes[c.id, below] for c in children]))
-                stack.pop()
+        boxes = self._boxes
+        stack = [(shape, level)]
+        while (shape, level) not in boxes:
+            node, at = asking = stack.pop()
+            if asking in boxes:
+                continue
+            children, below = self._asked(node, at)
+            missing = [(child, below) for child in children if (child, below) not in boxes]
+            if missing:
+                stack.append(asking)
+                stack += missing
             else:
-                opened[key] = children, below = self._asked(node, at)
-                stack.extend((c, below) for c in children if (c.id, below) not in self._boxes)
-        return self._boxes[shape.id, level]
+                boxes[asking] = _usable(self._box(node, at, [boxes[child, below] for child in children]))
+        return boxes[shape, level]
 
     def moved(self, matrix: Matrix, box: Box) -> Box:
         """The box of the image, for every value of the params."""
-        if matrix.is_constant:
-            rows = [[e.number for e in row] for row in matrix.linear]
-            return box.moved(rows, [e.number for e in matrix.offset])
+        if matrix.numbers is not None:
+            return box.moved(matrix.numbers)
         if not box.is_finite:
             return box if box.is_empty else everything(len(box.lo))
         entries_lo, entries_hi = self._ranges.bounds(matrix.entries)
@@ -105,12 +104,9 @@ class Bounds:
             case Affine():
                 return self.moved(node.forward, boxes[0])
             case Union():
-                return _hull(boxes)
+                return hull(boxes)
             case Intersection():
-                result = boxes[0]
-                for box in boxes[1:]:
-                    result = result.meet(box)
-                return result
+                return meeting(boxes)
             case Complement():
                 return everything(node.dimension)
             case Paint():
@@ -128,7 +124,7 @@ class Bounds:
         if definition.is_standard and boxes and level <= 0.0 and all(b.is_empty for b in boxes):
             return nothing(size)
         if claims.bounds is None:  # what says how far it lowers its children does not move them
-            return _hull(boxes) if claims.lowering is not None and boxes else self._enclosed(node, level)
+            return hull(boxes) if claims.lowering is not None and boxes else self._enclosed(node, level)
         if level > 0.0 and not claims.bounds_use_level and not (definition.is_standard and boxes):
             return self._widened(node, claims, level, boxes)
         return self._claimed(node, level, boxes)
@@ -136,7 +132,7 @@ class Bounds:
     def _widened(self, node: Apply, claims: Claims, level: float, boxes: list[Box]) -> Box:
         """Where the claim is of level 0: its author need not have thought of others."""
         if claims.lowering is not None and boxes:
-            return _hull(boxes)
+            return hull(boxes)
         if claims.exactness in _EXACT_OUTSIDE and not boxes:
             return self._claimed(node, level, boxes).widened(level)
         return self._enclosed(node, level)
@@ -149,6 +145,9 @@ class Bounds:
         return enclosing(lower(node, p), node.dimension, level, self._ranges)
 
     def _claimed(self, node: Apply, level: float, boxes: list[Box]) -> Box:
+        corners = claimed_corners(node, level, self.values)
+        if corners is not None:
+            return _box_of(*corners)
         bounds = node.definition.claims.bounds
         assert bounds is not None
         lo, hi = bounds(node.environment, child_facts(self.values, node, boxes), self.values.constant(level))
@@ -158,19 +157,17 @@ class Bounds:
 
 def _usable(box: Box) -> Box:
     """Without bounds beyond what float32 can square: nests of turned boxes double without end."""
-    if all(a >= -_FARTHEST and b <= _FARTHEST for a, b in zip(box.lo, box.hi, strict=True)):
-        return box
+    for a, b in zip(box.lo, box.hi, strict=True):
+        if not (a >= -_FARTHEST and b <= _FARTHEST):
+            return _clipped(box)
+    return box
+
+
+def _clipped(box: Box) -> Box:
     return Box(
         tuple([a if a >= -_FARTHEST else -math.inf for a in box.lo]),
         tuple([b if b <= _FARTHEST else math.inf for b in box.hi]),
     )
-
-
-def _hull(boxes: Sequence[Box]) -> Box:
-    result = boxes[0]
-    for box in boxes[1:]:
-        result = result.hull(box)
-    return result
 
 
 def child_facts(

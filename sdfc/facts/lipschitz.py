@@ -144,7 +144,7 @@ class Lipschitz:
                 assert_never(shape)
 
     def _by_intervals(self, shape: Apply, region: Box) -> float:
-        from sdfc.field.interval import gradient_bound
+        from sdfc.field.steepness import gradient_bound
 
         if region.is_empty:
             return 1.0
@@ -152,14 +152,14 @@ class Lipschitz:
         value = lower(shape, p)
         # where a param stands twice, its whole range counts twice: pieces of the range lose less
         pieces = self._ranges.pieces(params_of([value]))
-        bound = max(gradient_bound(value, region.lo, region.hi, piece, 2048 // len(pieces)) for piece in pieces)
+        bound = gradient_bound(value, region.lo, region.hi, pieces)
         if not math.isfinite(bound):
             raise self._unbounded(shape, region, value)
         return bound
 
     def _unbounded(self, shape: Apply, region: Box, value: Expr) -> SceneError:
         """Names what is to blame: the first function of the formula, from within, whose slope has no bound."""
-        from sdfc.field.interval import gradient_bound
+        from sdfc.field.steepness import gradient_bound
 
         what = f"no bound of the slope of '{shape.definition.name}' could be found"
         claims = shape.definition.claims
@@ -172,6 +172,8 @@ class Lipschitz:
             hint = "claim one (`lipschitz 2`), or keep it in a box: `& box(size: [2, 2, 2])`"
             return scene_error(f"{what}: it has no bounds", shape.span, hint)
         for node in itertools.islice(topological_values([value]), _MOST_SUSPECTS):
-            if node.op in _STEEP and not math.isfinite(gradient_bound(node, region.lo, region.hi, self._ranges.of, 64)):
+            if node.op in _STEEP and not math.isfinite(
+                gradient_bound(node, region.lo, region.hi, [self._ranges.of], 64)
+            ):
                 return scene_error(f"{what} over its box: {_STEEP[node.op]}", shape.span, "claim one: `lipschitz 2`")
         return scene_error(f"{what} over its box", shape.span, "claim one: `lipschitz 2`")

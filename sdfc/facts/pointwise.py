@@ -11,6 +11,10 @@ def is_pointwise(shape: Apply, values: FieldGraph) -> bool:
     """Then a map of space may as well be applied to its children. A round is, a displacement or a twist is not."""
     if not shape.children:
         return False
+    return values.remembered((is_pointwise, shape.definition, shape.arguments), lambda: _is_pointwise(shape, values))
+
+
+def _is_pointwise(shape: Apply, values: FieldGraph) -> bool:
     p = values.input("p", Type(shape.dimension))
     asked: list[Expr] = []
 

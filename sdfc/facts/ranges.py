@@ -5,8 +5,12 @@ from __future__ import annotations
 import itertools
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from sdfc.field.graph import Expr
+
+if TYPE_CHECKING:
+    from sdfc.field.interval import ConstantBounds
 
 Range = tuple[tuple[float, ...], tuple[float, ...]]
 
@@ -26,12 +30,13 @@ def _varying(whole: Range) -> int:
     return sum(a != b for a, b in zip(*whole, strict=True))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Ranges:
     """The range of each param, by component. For the expressions of one graph."""
 
     of: Mapping[str, Range]
     _found: dict[int, tuple[list[float], list[float]]] = field(default_factory=dict, repr=False, compare=False)
+    _bounds: ConstantBounds | None = field(default=None, repr=False, compare=False)
 
     def pieces(self, names: Collection[str]) -> list[Mapping[str, Range]]:
         """The ranges of the params named, cut into at most _PIECES boxes that cover them; no vector is cut."""
@@ -66,11 +71,10 @@ class Ranges:
         return lo, hi
 
     def _live(self, value: Expr) -> tuple[list[float], list[float]]:
-        import numpy as np
+        if self._bounds is None:
+            from sdfc.field.interval import ConstantBounds
 
-        from sdfc.field.interval import IntervalEvaluator
-
-        params = {name: (low, high) for name, (low, high) in self.of.items()}
-        lo, hi = IntervalEvaluator(value).value({}, params)
-        size = value.type.size
-        return np.broadcast_to(np.ravel(lo), (size,)).tolist(), np.broadcast_to(np.ravel(hi), (size,)).tolist()
+            self._bounds = ConstantBounds(self.of)
+        lo, hi = self._bounds(value)
+        size = value.type.size  # a vector's may still be a scalar's
+        return (lo.tolist() * size)[:size], (hi.tolist() * size)[:size]

@@ -5,23 +5,26 @@ Bounds of second derivatives by intervals, over boxes of points and cells of dir
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import itertools
+from collections.abc import Hashable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sdfc.field import interval_rules as rules
 from sdfc.field.core import DEEP
-from sdfc.field.graph import Expr, Op
+from sdfc.field.graph import Expr, Op, topological
 from sdfc.field.interval import halves
 from sdfc.field.interval_bends import BENDS, Bend, everything_where, moving
 from sdfc.field.interval_rules import RULES, Array, Interval
 from sdfc.field.interval_slopes import SLOPES, Slope
+from sdfc.field.memory import MEMORY, fingerprint, params_fingerprint
 from sdfc.field.order import evaluation_order
 
 BOXES = 512  # how many boxes `bend_bounds` looks at
 CELLS = 4  # its directions: half of a cube's faces in CELLS x CELLS cells
 AT_ONCE = 64  # boxes that are cut in one go
+_NEAR = 2.0**-20  # of the box: what is infinite so near to a corner of the cuts, cuts do not mend
 _CUTS, _GAIN = 6, 0.9  # so many cuts are to bring this, or there are no more: half the bend saves a fifth of the steps
 
 
@@ -96,21 +99,35 @@ def bend_bounds(
     inside the solid does not count. Infinite if none is found. The box is cut where the bounds are worst until `boxes`
     have been looked at, or cutting does not help.
     """
-    evaluator = BendEvaluator(root, convex)
-    search = _Search(evaluator, pieces, np.array(lo, float), np.array(hi, float), _anywhere())
-    while search.seen < boxes and not np.isfinite(search.bounds).all():
-        search.cut()
-    if np.isfinite(search.bounds).all():  # it is worth the dearer look, by directions
-        search = _Search(evaluator, pieces, np.array(lo, float), np.array(hi, float), _directions())
-        before = np.full(len(pieces), np.inf)
-        while search.seen < boxes and (search.worst() < _GAIN * before).any():
-            before = search.worst()
-            for _ in range(_CUTS):
-                search.cut()
-    return [float(k) for k in search.worst()]
+
+    def search() -> list[float]:
+        evaluator = BendEvaluator(root, convex)
+        cells = _Cells(evaluator, pieces, np.array(lo, float), np.array(hi, float), _anywhere())
+        if not np.isfinite(cells.bounds).any() and cells.is_vain():
+            return [np.inf] * len(pieces)
+        while cells.seen < boxes and not np.isfinite(cells.bounds).all():
+            cells.cut()
+        if np.isfinite(cells.bounds).all():  # it is worth the dearer look, by directions
+            cells = _Cells(evaluator, pieces, np.array(lo, float), np.array(hi, float), _directions())
+            before = np.full(len(pieces), np.inf)
+            while cells.seen < boxes and (cells.worst() < _GAIN * before).any():
+                before = cells.worst()
+                for _ in range(_CUTS):
+                    cells.cut()
+        return [float(k) for k in cells.worst()]
+
+    ranges = tuple(params_fingerprint(piece) for piece in pieces)
+    question = "bend", _formulas(root, convex), tuple(lo), tuple(hi), ranges, boxes
+    return list(MEMORY.recall(question, search))
 
 
-class _Search:
+def _formulas(root: Expr, convex: Mapping[int, tuple[Expr, float]]) -> Hashable:
+    """What is asked about, whatever graph it is of."""
+    known = [(node, *convex[node.id]) for node in topological([root]) if node.id in convex]
+    return fingerprint([root, *(e for node, point, _ in known for e in (node, point))]), tuple(s for _, _, s in known)
+
+
+class _Cells:
     """Boxes of points, each for one piece of the params' ranges, and how hard the root may bend down in each."""
 
     def __init__(
@@ -157,6 +174,16 @@ class _Search:
         self._owner = np.concatenate([self._owner[keep], owner])
         self.bounds = np.concatenate([self.bounds[keep], fresh])
         self.seen += fresh.size
+
+    def is_vain(self) -> bool:
+        """Whether all are infinite right beside the middle, where the hub of a ring is: however boxes are cut, one of
+        them keeps that."""
+        sides = np.array(list(itertools.product((-1.0, 1.0), repeat=self._lo.shape[0]))).T
+        middle, near = 0.5 * (self._lo + self._hi), _NEAR * (self._hi - self._lo)
+        ends = middle[:, :, None], (middle[:, :, None] + near[:, :, None] * sides[:, None, :])
+        lo, hi = (pick(*ends).reshape(self._lo.shape[0], -1) for pick in (np.minimum, np.maximum))
+        found = self._bend(lo, hi, np.repeat(self._owner, sides.shape[1]))
+        return bool(np.isinf(found).reshape(self._count, -1).any(axis=1).all())
 
     def _bend(self, lo: Array, hi: Array, owner: NDArray[np.int64]) -> Array:
         each, count = self._cells.lo.shape[1], lo.shape[1]

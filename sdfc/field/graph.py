@@ -5,9 +5,10 @@ Scalars and vectors mix as in GLSL: a FLOAT with a vector works component by com
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
-from typing import TypeAlias, cast
+import math
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from struct import Struct
+from typing import Any, Final, TypeAlias, TypeVar
 
 from sdfc.field.folding import fold
 from sdfc.field.operations import BINARY as BINARY
@@ -17,52 +18,70 @@ from sdfc.field.operations import LOGIC as LOGIC
 from sdfc.field.operations import UNARY as UNARY
 from sdfc.field.operations import Op as Op
 from sdfc.field.operations import Type as Type
-from sdfc.field.simplify import simplify
+from sdfc.field.simplify import SIMPLIFY
 
-# members of enums are dear to look up, and nodes are made by the ten thousand
-_CONST, _FLOAT = Op.CONST, Type.FLOAT
+# members of enums are dear to look up, and nodes are asked for by the ten thousand
+_CONST, _FLOAT, _BOOL = Op.CONST, Type.FLOAT, Type.BOOL
+_ADD, _SUB, _MUL, _DIV, _VECTOR, _SWIZZLE = Op.ADD, Op.SUB, Op.MUL, Op.DIV, Op.VECTOR, Op.SWIZZLE
 _OF_SIZE = tuple(Type)  # by the number of components
+_BITS = tuple([Struct(f"{size}d").pack for size in range(5)])
 _RESULT = dict.fromkeys((Op.DOT, Op.LENGTH), Type.FLOAT) | dict.fromkeys(COMPARISON | LOGIC, Type.BOOL)
 
 Value: TypeAlias = tuple[float, ...] | tuple[int, ...] | str | None
 Number: TypeAlias = float | int
 Operand: TypeAlias = "Expr | float | int"
+T = TypeVar("T")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class Expr:
-    """A node. Equal means identical: only `FieldGraph.add` makes nodes."""
+    """A node. Equal means identical: only `FieldGraph` makes nodes, and nothing changes them.
 
-    graph: FieldGraph = field(repr=False)
-    id: int
-    op: Op
-    type: Type
-    args: tuple[Expr, ...] = field(repr=False)
-    value: Value
+    No dataclass: a frozen one takes thrice as long to make. `numbers` are the components of a constant; no other node
+    has any.
+    """
+
+    __slots__ = ("args", "graph", "id", "is_constant", "numbers", "op", "type", "value")
+
+    def __init__(
+        self, graph: FieldGraph, number: int, op: Op, type_: Type, args: tuple[Expr, ...], value: Value
+    ) -> None:
+        self.graph: Final = graph
+        self.id: Final = number
+        self.op: Final = op
+        self.type: Final = type_
+        self.args: Final = args
+        self.value: Final = value
+        self.is_constant: Final = op is _CONST
+        if op is _CONST:
+            assert isinstance(value, tuple)
+            self.numbers: Final[tuple[float, ...]] = value
+
+    def __repr__(self) -> str:
+        return f"Expr(id={self.id!r}, op={self.op!r}, type={self.type!r}, value={self.value!r})"
 
     def __add__(self, other: Operand) -> Expr:
-        return self.graph.add(Op.ADD, self, self.graph.lift(other))
+        return self.graph.add(_ADD, self, self.graph.lift(other))
 
     def __radd__(self, other: Operand) -> Expr:
-        return self.graph.add(Op.ADD, self.graph.lift(other), self)
+        return self.graph.add(_ADD, self.graph.lift(other), self)
 
     def __sub__(self, other: Operand) -> Expr:
-        return self.graph.add(Op.SUB, self, self.graph.lift(other))
+        return self.graph.add(_SUB, self, self.graph.lift(other))
 
     def __rsub__(self, other: Operand) -> Expr:
-        return self.graph.add(Op.SUB, self.graph.lift(other), self)
+        return self.graph.add(_SUB, self.graph.lift(other), self)
 
     def __mul__(self, other: Operand) -> Expr:
-        return self.graph.add(Op.MUL, self, self.graph.lift(other))
+        return self.graph.add(_MUL, self, self.graph.lift(other))
 
     def __rmul__(self, other: Operand) -> Expr:
-        return self.graph.add(Op.MUL, self.graph.lift(other), self)
+        return self.graph.add(_MUL, self.graph.lift(other), self)
 
     def __truediv__(self, other: Operand) -> Expr:
-        return self.graph.add(Op.DIV, self, self.graph.lift(other))
+        return self.graph.add(_DIV, self, self.graph.lift(other))
 
     def __rtruediv__(self, other: Operand) -> Expr:
-        return self.graph.add(Op.DIV, self.graph.lift(other), self)
+        return self.graph.add(_DIV, self.graph.lift(other), self)
 
     def __neg__(self) -> Expr:
         return self.graph.add(Op.NEG, self)
@@ -80,88 +99,113 @@ class Expr:
         return self.graph.swizzle(self, tuple("xyzw".index(c) for c in letters))
 
     @property
-    def is_constant(self) -> bool:
-        return self.op is _CONST
-
-    @property
     def number(self) -> float:
         """The value of a constant FLOAT."""
         assert self.type is _FLOAT
         return self.numbers[0]
-
-    @property
-    def numbers(self) -> tuple[float, ...]:
-        """The components of a constant."""
-        assert self.op is _CONST
-        return cast("tuple[float, ...]", self.value)
 
 
 class FieldGraph:
     """All expressions of one compilation. Equal expressions are one node; constants fold in float64 as they come."""
 
     def __init__(self) -> None:
-        self._nodes: dict[tuple[object, ...], Expr] = {}
+        self._count = 0
+        self._constants: dict[tuple[Type, bytes], Expr] = {}
+        self._leaves: dict[tuple[Op, Type, str], Expr] = {}
+        # what was asked for, and what it was made to: a node of its own, or a simpler one
+        self._made: dict[tuple[Op, tuple[Expr, ...], Value], Expr] = {}
+        self._remembered: dict[Hashable, Any] = {}
+
+    def remembered(self, question: Hashable, answer: Callable[[], T]) -> T:
+        """What was found out about nodes of this graph, once for all who ask: the question says what, and of which."""
+        if question not in self._remembered:
+            self._remembered[question] = answer()
+        found: T = self._remembered[question]
+        return found
 
     def __len__(self) -> int:
-        return len(self._nodes)
+        return self._count
 
-    def _intern(self, op: Op, type_: Type, args: tuple[Expr, ...], value: Value) -> Expr:
-        # repr keeps -0.0 and 0.0 apart, and makes NaN equal to itself
-        key = (op, type_, tuple([a.id for a in args]), repr(value) if op is _CONST else value)
-        node = self._nodes.get(key)
-        if node is None:
-            node = self._nodes[key] = Expr(self, len(self._nodes), op, type_, args, value)
+    def _new(self, op: Op, type_: Type, args: tuple[Expr, ...], value: Value) -> Expr:
+        node = Expr(self, self._count, op, type_, args, value)
+        self._count += 1
         return node
 
+    def _constant(self, type_: Type, numbers: tuple[Number, ...]) -> Expr:
+        """Bit for bit, which keeps -0.0 and 0.0 apart; but every NaN is one."""
+        key = type_, _BITS[len(numbers)](*numbers)
+        node = self._constants.get(key)
+        if node is None:
+            numbers = tuple([math.nan if math.isnan(n) else float(n) for n in numbers])
+            key = type_, _BITS[len(numbers)](*numbers)
+            node = self._constants.get(key) or self._constants.setdefault(key, self._new(_CONST, type_, (), numbers))
+        return node
+
+    def _leaf(self, op: Op, type_: Type, name: str) -> Expr:
+        key = op, type_, name
+        return self._leaves.get(key) or self._leaves.setdefault(key, self._new(op, type_, (), name))
+
+    def _intern(self, op: Op, type_: Type, args: tuple[Expr, ...], value: Value) -> Expr:
+        key = op, args, value
+        return self._made.get(key) or self._made.setdefault(key, self._new(op, type_, args, value))
+
     def constant(self, *components: Number) -> Expr:
-        return self._intern(_CONST, _OF_SIZE[len(components)], (), tuple(map(float, components)))
+        return self._constant(_OF_SIZE[len(components)], components)
 
     def boolean(self, value: bool) -> Expr:
-        return self._intern(_CONST, Type.BOOL, (), (float(value),))
+        return self._constant(_BOOL, (value,))
 
     def lift(self, value: Operand) -> Expr:
         return value if isinstance(value, Expr) else self.constant(value)
 
     def input(self, name: str, type_: Type = Type.VEC3) -> Expr:
-        return self._intern(Op.INPUT, type_, (), name)
+        return self._leaf(Op.INPUT, type_, name)
 
     def param(self, name: str, type_: Type = Type.FLOAT) -> Expr:
-        return self._intern(Op.PARAM, type_, (), name)
+        return self._leaf(Op.PARAM, type_, name)
 
     def vector(self, *components: Operand) -> Expr:
-        return self.add(Op.VECTOR, *(self.lift(c) for c in components))
+        return self.add(_VECTOR, *[self.lift(c) for c in components])
 
     def swizzle(self, vector: Expr, indices: tuple[int, ...]) -> Expr:
-        return self.add(Op.SWIZZLE, vector, value=indices)
+        return self.add(_SWIZZLE, vector, value=indices)
 
     def add(self, op: Op, *args: Expr, value: Value = None) -> Expr:
         """The node for `op(args)`, folded or simplified where that is exact."""
+        key = op, args, value
+        node = self._made.get(key)
+        if node is None:
+            node = self._made[key] = self._added(op, args, value)
+        return node
+
+    def _added(self, op: Op, args: tuple[Expr, ...], value: Value) -> Expr:
         for argument in args:
-            if argument.op is not _CONST:
-                simple = simplify(self, op, args, value)
-                return simple or self._intern(op, _result_type(op, args, value), args, value)
+            if not argument.is_constant:
+                rule = SIMPLIFY.get(op)
+                simple = None if rule is None else rule(self, args, value)
+                return simple or self._new(op, _result_type(op, args, value), args, value)
         type_ = _result_type(op, args, value)
-        return self._intern(_CONST, type_, (), fold(op, [a.numbers for a in args], type_.size, value))
+        return self._constant(type_, fold(op, [a.numbers for a in args], type_.size, value))
 
     # GLSL's vocabulary, for code that builds formulas
 
     def call(self, op: Op, *args: Operand) -> Expr:
-        return self.add(op, *(self.lift(a) for a in args))
+        return self.add(op, *[self.lift(a) for a in args])
 
     def min(self, a: Operand, b: Operand) -> Expr:
-        return self.call(Op.MIN, a, b)
+        return self.add(Op.MIN, self.lift(a), self.lift(b))
 
     def max(self, a: Operand, b: Operand) -> Expr:
-        return self.call(Op.MAX, a, b)
+        return self.add(Op.MAX, self.lift(a), self.lift(b))
 
     def clamp(self, x: Operand, lo: Operand, hi: Operand) -> Expr:
         return self.min(self.max(x, lo), hi)
 
     def sqrt(self, x: Operand) -> Expr:
-        return self.call(Op.SQRT, x)
+        return self.add(Op.SQRT, self.lift(x))
 
     def abs(self, x: Operand) -> Expr:
-        return self.call(Op.ABS, x)
+        return self.add(Op.ABS, self.lift(x))
 
     def length(self, x: Expr) -> Expr:
         return self.add(Op.LENGTH, x)
@@ -183,9 +227,9 @@ class FieldGraph:
 def _result_type(op: Op, args: Sequence[Expr], value: Value) -> Type:
     if op in _RESULT:
         return _RESULT[op]
-    if op is Op.VECTOR:
+    if op is _VECTOR:
         return _OF_SIZE[len(args)]
-    if op is Op.SWIZZLE:
+    if op is _SWIZZLE:
         assert isinstance(value, tuple)
         return _OF_SIZE[len(value)]
     last = args[-1].type
@@ -193,34 +237,27 @@ def _result_type(op: Op, args: Sequence[Expr], value: Value) -> Type:
     return first if first.size >= last.size else last
 
 
-def arguments(node: Expr) -> Sequence[Expr]:
-    """The arguments of a node: what `topological` follows unless told otherwise."""
-    return node.args
-
-
-def topological(roots: Iterable[Expr], below: Callable[[Expr], Sequence[Expr]] = arguments) -> Iterator[Expr]:
+def topological(roots: Iterable[Expr], below: Callable[[Expr], Sequence[Expr]] | None = None) -> list[Expr]:
     """Every node below the roots, arguments before users, the first argument first, each once.
 
     Iterative: depth is no limit. `below` may leave arguments out or put them in another order.
     """
-    done: set[int] = set()
-    opened: set[int] = set()
+    order: list[Expr] = []
+    done: set[Expr] = set()
     stack = list(roots)
     stack.reverse()
     while stack:
-        node = stack[-1]
-        number = node.id
-        if number not in opened:
-            opened.add(number)
-            missing = [a for a in below(node) if a.id not in done]
-            if missing:
-                missing.reverse()
-                stack += missing
-                continue
-        stack.pop()
-        if number not in done:
-            done.add(number)
-            yield node
+        node = stack.pop()
+        if node in done:
+            continue
+        args = node.args if below is None else below(node)
+        if done.issuperset(args):
+            done.add(node)
+            order.append(node)
+        else:
+            stack.append(node)  # again, when what is missing is there
+            stack += args[::-1]
+    return order
 
 
 def substitute(root: Expr, replace: dict[Expr, Expr]) -> Expr:
@@ -228,17 +265,16 @@ def substitute(root: Expr, replace: dict[Expr, Expr]) -> Expr:
     made: dict[int, Expr] = {key.id: value for key, value in replace.items()}
     for node in topological([root]):
         if node.id not in made:
-            args = tuple(made[a.id] for a in node.args)
-            unchanged = all(a is b for a, b in zip(args, node.args, strict=True))
-            made[node.id] = node if unchanged else node.graph.add(node.op, *args, value=node.value)
+            args = tuple([made[a.id] for a in node.args])
+            made[node.id] = node if args == node.args else node.graph.add(node.op, *args, value=node.value)
     return made[root.id]
 
 
 def inputs_of(root: Expr) -> frozenset[Expr]:
     """The INPUT nodes that `root` depends on."""
-    return frozenset(n for n in topological([root]) if n.op is Op.INPUT)
+    return frozenset([n for n in topological([root]) if n.op is Op.INPUT])
 
 
 def params_of(roots: Iterable[Expr]) -> frozenset[str]:
     """The names of the params that the roots depend on."""
-    return frozenset(str(n.value) for n in topological(roots) if n.op is Op.PARAM)
+    return frozenset([str(n.value) for n in topological(roots) if n.op is Op.PARAM])

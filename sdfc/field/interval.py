@@ -12,10 +12,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sdfc.field.graph import LEAVES, Expr, Op, Type
+from sdfc.field.graph import LEAVES, Expr, Op, topological
 from sdfc.field.interval_jumps import JUMPS, Sides
 from sdfc.field.interval_rules import (
-    EPSILON,
     RULES,
     Array,
     Interval,
@@ -161,14 +160,17 @@ class IntervalEvaluator:
         self, box: tuple[Array, Array], direction: Array, params: Parameters | None = None
     ) -> tuple[Array, Array]:
         """Bounds of the root's derivative along `direction` (k, n) over boxes of `p`, (k, n) each end."""
-        lo, hi = box
-        values = _parameters(self._nodes, params or {})
+        return self.slope(Interval(*box), direction, _parameters(self._nodes, params or {}))
+
+    def slope(self, box: Interval, direction: Array, params: Mapping[str, Interval]) -> tuple[Array, Array]:
+        """As `directional`. A param has one interval for all boxes, (1,) or (k, 1), or one for each, (n,) or (k, n)."""
         slopes = []
-        for part in _parts(lo.shape[1]):
+        for part in _parts(direction.shape[1]):
             seed = direction[:, part]
-            _, slope = self._run({"p": Interval(lo[:, part], hi[:, part])}, values, {"p": Interval(seed, seed)})
+            values = {name: _columns(interval, part) for name, interval in params.items()}
+            _, slope = self._run({"p": _columns(box, part)}, values, {"p": Interval(seed, seed)})
             slopes.append(_known(slope))
-        count = lo.shape[1]
+        count = direction.shape[1]
         return _joined([s.lo for s in slopes], count), _joined([s.hi for s in slopes], count)
 
     def _slab(self, o: Array, d: Array, t: Interval, values: Mapping[str, Interval], centred: bool) -> RaySlab:
@@ -216,6 +218,28 @@ class IntervalEvaluator:
                 for finished in self._last_use[position]:
                     del values[finished], slopes[finished]
             return settled(values[self.root.id]), slopes[self.root.id]
+
+
+class ConstantBounds:
+    """Bounds of expressions without inputs, over one range of each param; what they share is computed once."""
+
+    def __init__(self, params: Parameters) -> None:
+        self._params = params
+        self._found: dict[Expr, Interval] = {}
+
+    def __call__(self, root: Expr) -> Interval:
+        """Of the root's components, (k,) each end."""
+        nodes = topological([root], lambda node: () if node in self._found else node.args)
+        fresh = [node for node in nodes if node not in self._found]
+        values = _parameters(fresh, self._params)
+        with np.errstate(all="ignore"):
+            for node in fresh:
+                if node.op in LEAVES:
+                    self._found[node] = _LEAF[node.op](node, {}, values)
+                else:
+                    self._found[node] = RULES[node.op](node, [self._found[a] for a in node.args])
+        lo, hi = settled(self._found[root])
+        return Interval(lo.ravel(), hi.ravel())
 
 
 def _last_uses(nodes: Sequence[Expr]) -> list[list[int]]:
@@ -297,88 +321,6 @@ def _points_on_rays(o: Array, d: Array, t: Interval) -> Interval:
     """o + t d over each segment: (k, n)."""
     with np.errstate(all="ignore"):
         return added(Interval(o, o), multiplied(Interval(t.lo, t.lo) if t.lo is t.hi else t, Interval(d, d)))
-
-
-BOXES = 2048  # how many boxes `gradient_bound` looks at
-GRID = 6  # its directions: a cube's faces in GRID x GRID cells
-
-
-def gradient_bound(
-    root: Expr, lo: Sequence[float], hi: Sequence[float], params: Parameters | None = None, boxes: int = BOXES
-) -> float:
-    """An upper bound of |grad root| over the box lo <= p <= hi, so a Lipschitz constant there; inf if none is found.
-
-    `root` is a FLOAT in the INPUT `p` (VEC2 or VEC3); a PARAM that `params` lacks may be any number. The box is cut
-    where its bound is worst until `boxes` have been looked at, or the bound is within 2 % of what is attained. In
-    forward mode, which unlike the reverse-mode gradient notices a jump (its gradient is 0 on both sides). Where two
-    kinks meet the hulls of their sides add up: an exact box's distance, for one, is bounded by 2.06.
-    """
-    evaluator = IntervalEvaluator(root)
-    known = {name: (-np.inf * np.ones(t.size), np.inf * np.ones(t.size)) for name, t in _param_types(root)}
-    known.update(params or {})  # type: ignore[arg-type]
-    low, high = np.array(lo, float)[:, None], np.array(hi, float)[:, None]
-    bounds, attained = _box_bounds(evaluator, low, high, known)
-    seen = 1
-    while seen < boxes and bounds.max() > 1.02 * attained:
-        worst = np.argsort(bounds)[::-1][: max(1, (boxes - seen) // 2)]
-        worst = (
-            worst[bounds[worst] >= 0.98 * bounds.max()]
-            if np.isfinite(bounds.max())
-            else worst[~np.isfinite(bounds[worst])]
-        )
-        parts_lo, parts_hi = halves(low[:, worst], high[:, worst])
-        part_bounds, part_attained = _box_bounds(evaluator, parts_lo, parts_hi, known)
-        # a part is no worse than its whole
-        part_bounds = np.minimum(part_bounds, np.tile(bounds[worst], 2))
-        attained = max(attained, part_attained)
-        seen += part_bounds.size
-        keep = np.setdiff1d(np.arange(bounds.size), worst)
-        low, high = np.concatenate([low[:, keep], parts_lo], 1), np.concatenate([high[:, keep], parts_hi], 1)
-        bounds = np.concatenate([bounds[keep], part_bounds])
-    return float(bounds.max())
-
-
-def _param_types(root: Expr) -> list[tuple[str, Type]]:
-    return [(str(node.value), node.type) for node in evaluation_order([root]) if node.op is Op.PARAM]
-
-
-def _box_bounds(evaluator: IntervalEvaluator, lo: Array, hi: Array, params: Parameters) -> tuple[Array, float]:
-    """An upper bound of |grad| over each box, and a number that |grad| attains in one of them."""
-    size, count = lo.shape
-    directions, cosine = _cover(size)
-    box = np.repeat(lo, directions.shape[1], axis=1), np.repeat(hi, directions.shape[1], axis=1)
-    low, high = (end.reshape(count, -1) for end in evaluator.directional(box, np.tile(directions, count), params))
-    largest = np.maximum(np.abs(low), np.abs(high))
-    by_axes = np.sqrt(np.sum(largest[:, :size] ** 2, axis=1)) * (1.0 + 4.0 * EPSILON)
-    by_directions = largest.max(axis=1) / cosine
-    attained = np.maximum(np.maximum(low, -high), 0.0).max()
-    return np.minimum(by_axes, by_directions), float(attained) if np.isfinite(attained) else 0.0
-
-
-def _cover(size: int) -> tuple[Array, float]:
-    """Unit vectors (size, m), the axes first, and the cosine of the angle within which every line has one of them.
-
-    The derivative along that one is at least that much of |grad|.
-    """
-    if size == 2:
-        angle = np.arange(32) * (np.pi / 32)
-        turned = np.stack([np.cos(angle), np.sin(angle)])
-        return np.concatenate([np.eye(2), turned], axis=1), float(np.cos(np.pi / 64) - 1e-9)
-    ends = np.linspace(-1.0, 1.0, GRID + 1)
-    middle = 0.5 * (ends[1:] + ends[:-1])
-    u, v = (a.ravel() for a in np.meshgrid(middle, middle))
-    face = np.stack([u, v, np.ones_like(u)])
-    face /= np.sqrt(np.sum(face * face, axis=0))
-    # a cell's farthest point is one of its corners
-    cosine = 1.0
-    for du in (-1.0 / GRID, 1.0 / GRID):
-        for dv in (-1.0 / GRID, 1.0 / GRID):
-            corner = np.stack([u + du, v + dv, np.ones_like(u)])
-            cosine = min(
-                cosine, float((np.sum(corner * face, axis=0) / np.sqrt(np.sum(corner * corner, axis=0))).min())
-            )
-    faces = [np.roll(face, turn, axis=0) for turn in range(3)]
-    return np.concatenate([np.eye(3), *faces], axis=1), cosine - 1e-9
 
 
 def halves(lo: Array, hi: Array) -> tuple[Array, Array]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from sdfc.field.operations import Op, Type
 
@@ -11,109 +11,116 @@ if TYPE_CHECKING:
     from sdfc.field.graph import Expr, FieldGraph
 
 
+Arguments: TypeAlias = "tuple[Expr, ...]"
+Rule: TypeAlias = "Callable[[FieldGraph, Arguments, object], Expr | None]"
+
 _IN_ORDER = tuple(tuple(range(size)) for size in range(5))
-_CONST, _NEG, _SWIZZLE, _VECTOR = Op.CONST, Op.NEG, Op.SWIZZLE, Op.VECTOR  # looked up once: this is asked often
+_NEG, _SWIZZLE, _VECTOR, _BOOL = Op.NEG, Op.SWIZZLE, Op.VECTOR, Type.BOOL  # looked up once: this is asked often
 
 
-def _is_zero(e: Expr) -> bool:
-    return e.op is _CONST and not any(e.numbers)
+def _is_zero(constant: Expr) -> bool:
+    return not any(constant.numbers)
 
 
-def _is_all(e: Expr, value: float) -> bool:
-    return e.op is _CONST and e.type is not Type.BOOL and e.numbers.count(value) == len(e.numbers)
+def _is_all(constant: Expr, value: float) -> bool:
+    return constant.type is not _BOOL and constant.numbers.count(value) == len(constant.numbers)
 
 
 def _zeros(graph: FieldGraph, *like: Expr) -> Expr:
-    return graph.constant(*([0.0] * max(e.type.size for e in like)))
+    return graph.constant(*([0.0] * max([e.type.size for e in like])))
 
 
-def simplify(graph: FieldGraph, op: Op, args: tuple[Expr, ...], value: object) -> Expr | None:
-    """An equal, simpler node, or None. Only rewrites that are exact in real arithmetic for finite values."""
-    rule = _SIMPLIFY.get(op)
-    if op is _SWIZZLE:
-        assert isinstance(value, tuple)
-        return _simplify_swizzle(graph, args[0], value)
-    return rule(graph, *args) if rule is not None else None
-
-
-def _simplify_add(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
-    if _is_zero(b) and a.type.size >= b.type.size:
+def _simplify_add(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
+    a, b = args
+    if b.is_constant and _is_zero(b) and a.type.size >= b.type.size:
         return a
-    if _is_zero(a) and b.type.size >= a.type.size:
+    if a.is_constant and _is_zero(a) and b.type.size >= a.type.size:
         return b
     return graph.add(Op.SUB, a, b.args[0]) if b.op is _NEG else None
 
 
-def _simplify_sub(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
-    if _is_zero(b) and a.type.size >= b.type.size:
+def _simplify_sub(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
+    a, b = args
+    if b.is_constant and _is_zero(b) and a.type.size >= b.type.size:
         return a
-    if _is_zero(a) and b.type.size >= a.type.size:
+    if a.is_constant and _is_zero(a) and b.type.size >= a.type.size:
         return graph.add(Op.NEG, b)
     if a is b:
         return _zeros(graph, a)
     return graph.add(Op.ADD, a, b.args[0]) if b.op is _NEG else None
 
 
-def _simplify_mul(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
-    if _is_zero(a) or _is_zero(b):
+def _simplify_mul(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
+    a, b = args
+    if not (a.is_constant or b.is_constant):
+        return None
+    factor, other = (b, a) if b.is_constant else (a, b)  # one of them is none, or it would be folded
+    if _is_zero(factor):
         return _zeros(graph, a, b)
-    for factor, other in ((b, a), (a, b)):
-        if factor.op is _CONST and other.type.size >= factor.type.size:
-            if _is_all(factor, 1.0):
-                return other
-            if _is_all(factor, -1.0):
-                return graph.add(_NEG, other)
-    return None
+    if other.type.size < factor.type.size:
+        return None
+    if _is_all(factor, 1.0):
+        return other
+    return graph.add(_NEG, other) if _is_all(factor, -1.0) else None
 
 
-def _simplify_div(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
-    if _is_zero(a):
+def _simplify_div(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
+    a, b = args
+    if a.is_constant and _is_zero(a):
         return _zeros(graph, a, b)
-    if a.type.size >= b.type.size and _is_all(b, 1.0):
+    if b.is_constant and a.type.size >= b.type.size and _is_all(b, 1.0):
         return a
-    return graph.add(Op.NEG, a) if a.type.size >= b.type.size and _is_all(b, -1.0) else None
+    return graph.add(Op.NEG, a) if b.is_constant and a.type.size >= b.type.size and _is_all(b, -1.0) else None
 
 
-def _simplify_pow(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
-    return a if a.type.size >= b.type.size and _is_all(b, 1.0) else None
+def _simplify_pow(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
+    a, b = args
+    return a if b.is_constant and a.type.size >= b.type.size and _is_all(b, 1.0) else None
 
 
-def _simplify_neg(graph: FieldGraph, a: Expr) -> Expr | None:
+def _simplify_neg(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
+    (a,) = args
     return a.args[0] if a.op is Op.NEG else None
 
 
-def _simplify_abs(graph: FieldGraph, a: Expr) -> Expr | None:
+def _simplify_abs(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
+    (a,) = args
     return a if a.op is Op.ABS else graph.add(Op.ABS, a.args[0]) if a.op is Op.NEG else None
 
 
-def _simplify_same(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
+def _simplify_same(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
+    a, b = args
     return a if a is b else None
 
 
-def _simplify_and(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
-    if a.op is Op.CONST:
+def _simplify_and(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
+    a, b = args
+    if a.is_constant:
         return b if a.numbers[0] else a
-    if b.op is Op.CONST:
+    if b.is_constant:
         return a if b.numbers[0] else b
     return a if a is b else None
 
 
-def _simplify_or(graph: FieldGraph, a: Expr, b: Expr) -> Expr | None:
-    if a.op is Op.CONST:
+def _simplify_or(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
+    a, b = args
+    if a.is_constant:
         return a if a.numbers[0] else b
-    if b.op is Op.CONST:
+    if b.is_constant:
         return b if b.numbers[0] else a
     return a if a is b else None
 
 
-def _simplify_not(graph: FieldGraph, a: Expr) -> Expr | None:
+def _simplify_not(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
+    (a,) = args
     return a.args[0] if a.op is Op.NOT else None
 
 
-def _simplify_select(graph: FieldGraph, condition: Expr, a: Expr, b: Expr) -> Expr | None:
+def _simplify_select(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
+    condition, a, b = args
     if a is b:
         return a
-    if condition.op is not Op.CONST:
+    if not condition.is_constant:
         return None
     chosen, other = (a, b) if condition.numbers[0] else (b, a)
     if chosen.type.size >= other.type.size:
@@ -121,7 +128,9 @@ def _simplify_select(graph: FieldGraph, condition: Expr, a: Expr, b: Expr) -> Ex
     return graph.add(Op.VECTOR, *([chosen] * other.type.size))
 
 
-def _simplify_swizzle(graph: FieldGraph, a: Expr, indices: tuple[int, ...]) -> Expr | None:
+def _simplify_swizzle(graph: FieldGraph, args: Arguments, indices: object) -> Expr | None:
+    (a,) = args
+    assert isinstance(indices, tuple)
     if indices == _IN_ORDER[a.type.size]:
         return a
     if a.op is _VECTOR:
@@ -133,7 +142,7 @@ def _simplify_swizzle(graph: FieldGraph, a: Expr, indices: tuple[int, ...]) -> E
     return None
 
 
-def _simplify_vector(graph: FieldGraph, *args: Expr) -> Expr | None:
+def _simplify_vector(graph: FieldGraph, args: Arguments, value: object) -> Expr | None:
     """vec3(v.x, v.y, v.z) is v."""
     whole = args[0].args[0] if args[0].op is _SWIZZLE else None
     if whole is None or whole.type.size != len(args):
@@ -142,7 +151,8 @@ def _simplify_vector(graph: FieldGraph, *args: Expr) -> Expr | None:
     return whole if in_order else None
 
 
-_SIMPLIFY: dict[Op, Callable[..., Expr | None]] = {
+# An equal, simpler node, or None. Only rewrites that are exact in real arithmetic for finite values.
+SIMPLIFY: dict[Op, Rule] = {
     Op.ADD: _simplify_add,
     Op.SUB: _simplify_sub,
     Op.MUL: _simplify_mul,
@@ -156,5 +166,6 @@ _SIMPLIFY: dict[Op, Callable[..., Expr | None]] = {
     Op.OR: _simplify_or,
     Op.NOT: _simplify_not,
     Op.SELECT: _simplify_select,
+    Op.SWIZZLE: _simplify_swizzle,
     Op.VECTOR: _simplify_vector,
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sdfc.field.derivative import directional, gradient
 from sdfc.field.graph import Expr, Type
+from sdfc.field.memory import MEMORY, fingerprint, params_fingerprint
 from sdfc.field.numeric import Evaluator
 from sdfc.field.piece import SHORT, look
 from sdfc.field.span import span
@@ -55,10 +57,35 @@ class Trial:
         self._p, self._d = value.graph.input("p"), value.graph.input("d")
         self._rays = _through(np.array(lo)[:, None], np.array(hi)[:, None])
         self._params = params
-        self._near = Evaluator([value, gradient(value, self._p)])
+        self._question = fingerprint([value]), tuple(lo), tuple(hi), params_fingerprint(params)
 
     def steepness(self) -> float:
         """The gradient's length where rays first meet the surface, of most of them; infinite where none does."""
+        return MEMORY.recall(("steepness", self._question), self._steepness)
+
+    def balls(self, lipschitz: float) -> float:
+        """Mean steps of a ray by empty balls."""
+        return MEMORY.recall(("balls", self._question, lipschitz), lambda: self._mean(self._by_balls(lipschitz)))
+
+    def parabolas(self, core: Expr, lipschitz: float, bend: float) -> float:
+        """Mean steps by the roots of the parabolas below the field's core, or by balls where these are more."""
+        question = "parabolas", self._question, fingerprint([core]), lipschitz, bend
+        return MEMORY.recall(question, lambda: self._mean(self._by_parabolas(core, lipschitz, bend)))
+
+    def pieces(self, lipschitz: float) -> float:
+        """Mean steps by what is known of the pieces of the ray ahead; the constant may be infinite."""
+        return MEMORY.recall(("pieces", self._question, lipschitz), lambda: self._mean(self._by_pieces(lipschitz)))
+
+    def is_bounded(self) -> bool:
+        """Whether spans bound the field along rays, however short they must be: it has no jump, and no pole."""
+        return MEMORY.recall(("is bounded", self._question), self._is_bounded)
+
+    @cached_property
+    def _near(self) -> Evaluator:
+        """The value and its gradient."""
+        return Evaluator([self._value, gradient(self._value, self._p)])
+
+    def _steepness(self) -> float:
         rays, which = self._rays, np.arange(RAYS)
         length = rays.last - rays.first
         met = np.full(RAYS, np.nan)
@@ -70,18 +97,16 @@ class Trial:
         met = met[np.isfinite(met)]
         return float(np.median(met)) if met.size else np.inf
 
-    def balls(self, lipschitz: float) -> float:
-        """Mean steps of a ray by empty balls."""
+    def _by_balls(self, lipschitz: float) -> Rule:
         evaluate = Evaluator([self._value])
 
         def rule(rays: _Rays, t: Array, which: NDArray[np.int64]) -> Array:
             (value,) = evaluate(rays.at(t, which), self._params)
             return np.broadcast_to(value / lipschitz, t.shape)
 
-        return self._mean(rule)
+        return rule
 
-    def parabolas(self, core: Expr, lipschitz: float, bend: float) -> float:
-        """Mean steps by the roots of the parabolas below the field's core, or by balls where these are more."""
+    def _by_parabolas(self, core: Expr, lipschitz: float, bend: float) -> Rule:
         evaluate = Evaluator([self._value, core, directional(core, {self._p: self._d})])
 
         def rule(rays: _Rays, t: Array, which: NDArray[np.int64]) -> Array:
@@ -89,10 +114,9 @@ class Trial:
             value, above, slope = (np.broadcast_to(a, t.shape) for a in found)
             return np.maximum(value / lipschitz, _root(np.maximum(above, 0.0), slope, bend))
 
-        return self._mean(rule)
+        return rule
 
-    def pieces(self, lipschitz: float) -> float:
-        """Mean steps by what is known of the pieces of the ray ahead; the constant may be infinite."""
+    def _by_pieces(self, lipschitz: float) -> Rule:
         evaluate = self._spans()
         ahead = self._rays.last - self._rays.first
 
@@ -104,12 +128,10 @@ class Trial:
             clear, there, ahead[which] = look(length, value, _four(bounds), lipschitz, np.zeros(1), eps)
             return np.where(there, 0.0, np.maximum(clear, 1e-12))
 
-        return self._mean(rule)
+        return rule
 
-    def is_bounded(self) -> bool:
-        """Whether spans bound the field along rays, however short they must be: it has no jump, and no pole.
-
-        Pieces without a bound of the slope are cut: the shorter they are, the less the value must be able to change.
+    def _is_bounded(self) -> bool:
+        """Pieces without a bound of the slope are cut: the shorter they are, the less the value must be able to change.
         Where cells of a repetition meet it is as if it jumped, whatever the value really does: all of a cell is met.
         """
         evaluate, rays = self._spans(), self._rays

@@ -9,7 +9,7 @@ from functools import cache, lru_cache
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from sdfc.field.graph import FieldGraph
+from sdfc.field.graph import Expr, FieldGraph
 from sdfc.glsl.body import Body
 from sdfc.glsl.distance import DistanceWriter
 from sdfc.glsl.expression import literal, print_function, type_name
@@ -48,7 +48,7 @@ VERSION = "450 core"
 WEB_VERSION = "300 es"
 _ALONE = ("picture", "inspect")  # entries whose camera is in uniforms
 _MARK = "\x1f"  # before and after the library in a text that is not finished
-_WORD = re.compile(r"[A-Za-z_]\w*")
+_BETWEEN_WORDS = {code: " " for code in range(128) if re.fullmatch(r"\W", chr(code))}
 _COMMENT = re.compile(r"//[^\n]*")
 
 
@@ -118,8 +118,10 @@ class Assembly:
         params = _read(self._params(), text)
         if len(params) < len(self._setting.params):
             text = template.render(context | {"params": params})
-        text = "\n".join(line.rstrip() for line in _with_needed_library(text).split("\n"))
-        return re.sub(r"\n{3,}", "\n\n", text)
+        text = "\n".join([line.rstrip() for line in _with_needed_library(text).split("\n")])
+        while "\n\n\n" in text:
+            text = text.replace("\n\n\n", "\n\n")
+        return text
 
     def _context(self) -> dict[str, object]:
         plan, tracer = self._plan, self._plan.tracer
@@ -167,7 +169,7 @@ class Assembly:
         }
         if self._lit and surface is not None:
             context |= self._lighting(surface.properties)
-        context["functions"] = "\n".join(print_function(f) for f in self._functions.all)
+        context["functions"] = "\n".join([f.text for f in self._functions.all])
         context["live"] = [Variable(type_name(e.type), n) for n, e in self._live.values]
         context["live_lines"] = self._live_lines()
         return context
@@ -206,7 +208,7 @@ class Assembly:
         needed |= {"point_falloff": len(suns) < len(lights), "occlusion_weight": not self._plan.is_convex}
         needed |= {"ambient": True, "transmit": transmission}
         needed |= dict.fromkeys(("tone_map", "encode_srgb"), self._entry == "picture")
-        functions = [print_function(FUNCTIONS[name](self._graph), name) for name, wanted in needed.items() if wanted]
+        functions = [_shading_function(name) for name, wanted in needed.items() if wanted]
         return {
             "shading_functions": "\n".join(functions),
             "up": _vector(self._setting.up),
@@ -243,21 +245,27 @@ class Assembly:
 
     def _live_lines(self) -> list[str]:
         lines: list[str] = []
-        done: dict[int, str] = {}
+        done: dict[Expr, str] = {}
         for name, expr in self._live.values:
             body = Body(Done(done), 0)
             text = body.text(expr)
             scoped = [*body.lines, f"{name} = {text};"]
             lines += scoped if len(scoped) == 1 else ["{", *(f"    {line}" for line in scoped), "}"]
-            done[expr.id] = name
+            done[expr] = name
         return lines
 
 
 def _with_needed_library(text: str) -> str:
     """The text with only that of the library, between the marks, which the rest asks for."""
     before, library, after = text.split(_MARK)
-    asked_for = set(_WORD.findall(_COMMENT.sub("", before + after)))
+    asked_for = set(_COMMENT.sub("", before + after).translate(_BETWEEN_WORDS).split())
     return f"{before}{joined(pruned(_items(library), sorted(asked_for)))}{after}"
+
+
+@cache
+def _shading_function(name: str) -> str:
+    """The same in every scene."""
+    return print_function(FUNCTIONS[name](FieldGraph()), name)
 
 
 @lru_cache(maxsize=64)
@@ -268,7 +276,8 @@ def _items(library: str) -> list[Item]:
 
 def _read(params: list[Variable], text: str) -> list[Variable]:
     """The params that a shader reads: those named there besides their declaration and the line that sets them."""
-    return [p for p in params if len(re.findall(rf"\b{p.name}\b", text)) > 2]
+    # the word, by what is found fast: its letters, then what is around them
+    return [p for p in params if len(re.findall(rf"{p.name}(?<!\w{p.name})(?!\w)", text)) > 2]
 
 
 def _range(param: Param) -> str:

@@ -25,31 +25,34 @@ class Body:
     def __init__(self, live: Values, indent: int = 1) -> None:
         self.lines: list[str] = []
         self._live = live
+        self._shares = live.shares
         self._indent = indent
-        self._local: dict[int, str] = {}
+        self._local: dict[Expr, str] = {}
         self._once: set[str] = set()
         self._scope = Names(LOCALS)
         self._printer = Printer(self._name, self._scope)
 
     def _name(self, expr: Expr) -> str | None:
-        if expr.id not in self._local and self._live.is_shared(expr):
-            self._share(expr)
-        return self._local.get(expr.id) or self._live(expr)
+        name = self._local.get(expr) or self._live(expr)
+        if name is None and self._shares and self._live.is_shared(expr):
+            return self._share(expr)
+        return name
 
-    def _share(self, expr: Expr) -> None:
+    def _share(self, expr: Expr) -> str:
         """A local of the value, under a name of its own kind."""
         printer = Printer(lambda e: None if e is expr else self._name(e), self._scope)
         lines, (text,) = printer.statements([expr])
-        self._local[expr.id] = self._scope.fresh(local_name(expr))
-        for line in (*lines, f"{type_name(expr.type)} {self._local[expr.id]} = {text};"):
+        self._local[expr] = name = self._scope.fresh(local_name(expr))
+        for line in (*lines, f"{type_name(expr.type)} {name} = {text};"):
             self.add(line)
+        return name
 
     def text(self, value: Expr) -> str:
         """The text of an expression, after the statements that it needs."""
         return self.texts([value])[0]
 
     def texts(self, values: Sequence[Expr]) -> list[str]:
-        lines, texts = self._printer.statements(list(values))
+        lines, texts = self._printer.statements(values)
         for line in lines:
             self.add(line)
         return texts
@@ -58,12 +61,12 @@ class Body:
         """The text of a point or direction: a local of its own unless it is only moved or given."""
         if value.op in LEAVES or all(a.op in LEAVES for a in value.args):
             return self.text(value)
-        if value.id not in self._local:
+        if value not in self._local:
             text = self.text(value)
             name = self._scope.fresh(wanted)
             self.add(f"{type_name(value.type)} {name} = {text};")
-            self._local[value.id] = name
-        return self._local[value.id]
+            self._local[value] = name
+        return self._local[value]
 
     def add(self, line: str, span: Span | None = None) -> None:
         comment = f"  // {place(span)}" if span is not None else ""

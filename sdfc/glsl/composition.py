@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 from enum import IntEnum
-from typing import TypeAlias
+from functools import lru_cache
+from itertools import product
+from typing import NamedTuple, TypeAlias
 
 from sdfc.field.graph import Expr, Op, Type
 from sdfc.glsl.names import identifier, literal, param_name, type_name
@@ -25,8 +26,7 @@ class Level(IntEnum):
     ATOM = 15
 
 
-@dataclass(frozen=True, slots=True)
-class Text:
+class Text(NamedTuple):
     """An expression as GLSL."""
 
     text: str
@@ -45,16 +45,17 @@ class Text:
 
 Lookup: TypeAlias = Callable[[Expr], Text]
 
-_INFIX = {
-    Op.ADD: (" + ", Level.SUM),
-    Op.SUB: (" - ", Level.SUM),
-    Op.MUL: (" * ", Level.PRODUCT),
-    Op.DIV: (" / ", Level.PRODUCT),
-    Op.LESS: (" < ", Level.RELATION),
-    Op.LESS_EQUAL: (" <= ", Level.RELATION),
-    Op.EQUAL: (" == ", Level.EQUALITY),
-    Op.AND: (" && ", Level.AND),
-    Op.OR: (" || ", Level.OR),
+_CONST = Op.CONST  # members of enums are dear to look up
+_INFIX = {  # operator, level, and whether operands of the same level need no brackets on the right either
+    Op.ADD: (" + ", Level.SUM, False),
+    Op.SUB: (" - ", Level.SUM, False),
+    Op.MUL: (" * ", Level.PRODUCT, False),
+    Op.DIV: (" / ", Level.PRODUCT, False),
+    Op.LESS: (" < ", Level.RELATION, False),
+    Op.LESS_EQUAL: (" <= ", Level.RELATION, False),
+    Op.EQUAL: (" == ", Level.EQUALITY, False),
+    Op.AND: (" && ", Level.AND, True),
+    Op.OR: (" || ", Level.OR, True),
 }
 
 _CALLS = {
@@ -79,6 +80,13 @@ _CALLS = {
     Op.ATAN2: "atan",
 }
 
+# the letters of a swizzle, by its indices
+_LETTERS: dict[tuple[float, ...], str] = {
+    indices: "".join(["xyzw"[i] for i in indices])
+    for size in (1, 2, 3, 4)
+    for indices in product(range(4), repeat=size)
+}
+
 # GLSL takes (vector, float) for these, but no (float, vector); for the others of two operands both must be alike.
 _FLOAT_SECOND = frozenset({Op.MIN, Op.MAX, Op.MOD})
 _EXACT_NEGATION = {Op.ADD: " - ", Op.SUB: " + "}
@@ -87,18 +95,24 @@ _EXACT_NEGATION = {Op.ADD: " - ", Op.SUB: " + "}
 def compose(node: Expr, text_of: Lookup) -> Text:
     """The GLSL of a node; the texts of its arguments are asked of `text_of`."""
     if not node.args:
-        return _leaf(node)
-    depth = 1 + max([text_of(a).depth for a in node.args])
-    return _WRITERS.get(node.op, _call)(node, text_of, depth)
+        return leaf(node)
+    return written(node, text_of, 1 + max([text_of(a).depth for a in node.args]))
 
 
-def _leaf(node: Expr) -> Text:
-    if node.is_constant:
+def written(node: Expr, text_of: Lookup, depth: int) -> Text:
+    """The GLSL of a node that has arguments, told how deep it nests."""
+    return _WRITERS[node.op](node, text_of, depth)
+
+
+def leaf(node: Expr) -> Text:
+    """The GLSL of a constant, or of what has a name of its own."""
+    if node.op is _CONST:
         return constant(node.type, node.numbers)
     return Text((identifier if node.op is Op.INPUT else param_name)(str(node.value)), is_name=True)
 
 
-def constant(type_: Type, numbers: Sequence[float]) -> Text:
+@lru_cache(maxsize=4096)
+def constant(type_: Type, numbers: tuple[float, ...]) -> Text:
     """A constant as a literal or a constructor."""
     if type_ is Type.BOOL:
         return Text("true" if numbers[0] else "false")
@@ -170,7 +184,7 @@ def _component(e: Expr, text_of: Lookup) -> tuple[Text | None, str]:
 
 def _letters(swizzle: Expr) -> str:
     assert isinstance(swizzle.value, tuple)
-    return "".join("xyzw"[int(i)] for i in swizzle.value)
+    return _LETTERS[swizzle.value]
 
 
 def _swizzle(node: Expr, text_of: Lookup, depth: int) -> Text:
@@ -206,14 +220,14 @@ def _choice(node: Expr, text_of: Lookup, depth: int) -> Text:
 
 
 def _infix(node: Expr, text_of: Lookup, depth: int) -> Text:
-    operator, level = _INFIX[node.op]
-    left, right = (text_of(a) for a in node.args)
-    second = node.args[1]
-    if node.op in _EXACT_NEGATION and second.is_constant and max(second.numbers) <= 0.0 and not right.is_name:
+    operator, level, associates = _INFIX[node.op]
+    first, second = node.args
+    right = text_of(second)
+    if second.op is _CONST and node.op in _EXACT_NEGATION and max(second.numbers) <= 0.0 and not right.is_name:
         operator = _EXACT_NEGATION[node.op]
-        right = constant(second.type, [-n for n in second.numbers])
-    associates = node.op in (Op.AND, Op.OR)
-    return Text(f"{left.leading(level)}{operator}{right.within(level if associates else level + 1)}", level, depth)
+        right = constant(second.type, tuple([-n for n in second.numbers]))
+    inner = right.within(level if associates else level + 1)
+    return Text(f"{text_of(first).leading(level)}{operator}{inner}", level, depth)
 
 
 def _call(node: Expr, text_of: Lookup, depth: int) -> Text:
@@ -229,12 +243,13 @@ def _call(node: Expr, text_of: Lookup, depth: int) -> Text:
     return Text(f"{_CALLS[node.op]}({', '.join(texts)})", depth=depth)
 
 
-_WRITERS: dict[Op, Callable[[Expr, Lookup, int], Text]] = {  # of the others: _call
+_WRITERS: dict[Op, Callable[[Expr, Lookup, int], Text]] = {
+    **dict.fromkeys(_CALLS, _call),
+    **dict.fromkeys(_INFIX, _infix),
     Op.VECTOR: _vector,
     Op.SWIZZLE: _swizzle,
     Op.NEG: _negation,
     Op.NOT: _not,
     Op.ROUND: _rounded,
     Op.SELECT: _choice,
-    **dict.fromkeys(_INFIX, _infix),
 }

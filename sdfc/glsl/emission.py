@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from sdfc.field.function import Function
 from sdfc.field.graph import FieldGraph
 from sdfc.glsl.assembly import Assembly, environment
-from sdfc.glsl.expression import literal, print_function, type_name
-from sdfc.glsl.functions import Role
+from sdfc.glsl.expression import literal, type_name
+from sdfc.glsl.functions import GlslFunction, Role
 from sdfc.glsl.live import Live
 from sdfc.glsl.manual import description, header
 from sdfc.glsl.names import Names, param_name
@@ -113,7 +112,7 @@ class _Emission(Assembly):
         context["nearest"] = nearest.written(self._plan.root)
         surface = context["surface"]
         context["surface_values"] = _values(getattr(surface, "properties", {}))
-        context["functions"] = "\n".join(print_function(_described(f)) for f in self._functions.all)
+        context["functions"] = "\n".join([_described(f).text for f in self._functions.all])
         return context
 
     def _places(self) -> dict[str, object]:
@@ -239,7 +238,7 @@ class _Emission(Assembly):
         return "\n".join([*version, *(f"// {line}".rstrip() for line in lines), "", text])
 
 
-def _described(function: Function) -> Function:
+def _described(function: GlslFunction) -> GlslFunction:
     """What a formula is, is said where it is; here only what else there is of it."""
     is_gradient = function.name.endswith(Role.DISTANCE_SURFACE.value)
     return replace(function, doc="Its gradient, and its value.") if is_gradient else function

@@ -8,47 +8,68 @@ calls of min, and compiles the chain to better code than a tree of temporaries (
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TypeAlias
 
 from sdfc.field.function import Function
-from sdfc.field.graph import LEAVES, Expr, Op, topological
+from sdfc.field.graph import Expr, Op, params_of
 from sdfc.field.order import evaluation_order
-from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose
-from sdfc.glsl.names import Names, identifier, literal, param_name, type_name
+from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose, leaf
+from sdfc.glsl.in_place import CHAIN, DEPTH, WIDTH, InPlace, NeedsLocalError
+from sdfc.glsl.names import PARAM_PREFIX, Names, identifier, literal, param_name, type_name
 
-__all__ = ["Printer", "literal", "print_function", "type_name"]
+__all__ = ["DEPTH", "WIDTH", "Printed", "Printer", "literal", "print_function", "printed", "type_name"]
 
 NamesOf: TypeAlias = Callable[[Expr], str | None]
 
-WIDTH = 90  # characters of one expression
-DEPTH = 8  # operations nested in one expression
-CHAIN = 4  # so many steps of min and max in a row become updates of one variable
 LARGEST_PRODUCT = 64  # integer powers up to this are written as products
 
 
-def print_function(function: Function, name: str | None = None) -> str:
-    """The GLSL definition of a function, under its doc string as a comment.
+@dataclass(frozen=True, slots=True)
+class Printed:
+    """A function's definition in GLSL, but for its name and what is said of it."""
 
-    Parameters keep their names where GLSL allows it and no uniform has the same. `name` is taken as it is.
-    """
-    nodes = list(topological([function.result]))
-    scope = Names(param_name(str(n.value)) for n in nodes if n.op is Op.PARAM)
+    type: str
+    parameters: str
+    lines: tuple[str, ...]
+
+    def text(self, name: str, doc: str = "") -> str:
+        """The definition, under `doc` as a comment."""
+        said = [f"// {line}".rstrip().rstrip("\\") for line in doc.splitlines()]
+        return "\n".join([*said, f"{self.type} {name}({self.parameters}) {{", *self.lines, "}"]) + "\n"
+
+
+def printed(function: Function) -> Printed:
+    """A function in GLSL. Parameters keep their names where GLSL allows it and no uniform has the same."""
+    scope = Names()
+    if any(identifier(name).startswith(PARAM_PREFIX) for name, _ in function.parameters):
+        scope = Names(map(param_name, params_of([function.result])))
     renamed = {name: scope.fresh(name) for name, _ in function.parameters}
-    own = {name for name, _ in function.parameters}
-    assert all(n.value in own for n in nodes if n.op is Op.INPUT), f"{function.name} reads what is no parameter of it"
-    printer = Printer(lambda e: renamed[str(e.value)] if e.op is Op.INPUT else None, scope, function.names)
-    lines, (result,) = printer.statements([function.result])
+
+    def name_of(node: Expr) -> str | None:
+        if node.op is not _INPUT:
+            return None
+        assert node.value in renamed, f"{function.name} reads what is no parameter of it"
+        return renamed[str(node.value)]
+
+    lines, (result,) = Printer(name_of, scope).block([function.result], function.names)
     parameters = ", ".join(f"{type_name(type_)} {renamed[name]}" for name, type_ in function.parameters)
-    doc = [f"// {line}".rstrip().rstrip("\\") for line in function.doc.splitlines()]
-    head = f"{type_name(function.result.type)} {name or identifier(function.name)}({parameters}) {{"
-    body = [f"    {line}" for line in (*lines, f"return {result};")]
-    return "\n".join([*doc, head, *body, "}"]) + "\n"
+    body = tuple(f"    {line}" for line in (*lines, f"return {result};"))
+    return Printed(type_name(function.result.type), parameters, body)
 
 
+def print_function(function: Function, name: str | None = None) -> str:
+    """The GLSL definition of a function, under its doc string as a comment. `name` is taken as it is."""
+    return printed(function).text(name or identifier(function.name), function.doc)
+
+
+# members of enums are dear to look up, and these are asked for at every node
+_CONST, _INPUT, _VECTOR, _SWIZZLE, _POW, _MIN = Op.CONST, Op.INPUT, Op.VECTOR, Op.SWIZZLE, Op.POW, Op.MIN
 _EXTREMES = frozenset({Op.MIN, Op.MAX})
-_NOTHING: Mapping[Expr, str] = MappingProxyType({})
+_MEMBER = re.compile(r"[A-Za-z_][\w.]*")
+_PLAIN_CALL = re.compile(r"\w+\([^()]*\)")
 
 
 def _no_names(_: Expr) -> None:
@@ -63,68 +84,91 @@ def local_name(node: Expr) -> str:
 class Printer:
     """Prints expressions for one scope of GLSL; the locals of later calls never repeat the names of earlier ones.
 
-    `names` gives the text of a node that is there already, or None; what is below such a node is not printed. `scope`
-    holds the identifiers that locals must not take; names given for nodes are added to it. What is `called` something
-    is a local of that name.
+    `names` gives the text of a node that is there already, or None; what is below such a node is not printed. Constants
+    are not asked about. `scope` holds the identifiers that locals must not take; names given for nodes are added to it.
     """
 
-    def __init__(
-        self, names: NamesOf = _no_names, scope: Names | None = None, called: Mapping[Expr, str] = _NOTHING
-    ) -> None:
+    def __init__(self, names: NamesOf = _no_names, scope: Names | None = None) -> None:
         self._names = names
         self._scope = Names() if scope is None else scope
-        self._called = called
 
-    def statements(self, roots: Iterable[Expr]) -> tuple[list[str], list[str]]:
+    def statements(self, roots: Sequence[Expr]) -> tuple[list[str], list[str]]:
         """Declarations of locals, and one text for each root.
 
         A text may be any expression: bracket it before putting it beside an operator.
         """
-        roots = list(roots)
-        block = _Block(self._names, self._scope, roots, self._called)
+        try:
+            return [], InPlace(self._there).texts(roots)
+        except NeedsLocalError:
+            return self.block(roots)
+
+    def block(
+        self, roots: Sequence[Expr], called: Mapping[Expr, str] = MappingProxyType({})
+    ) -> tuple[list[str], list[str]]:
+        """The same, sooner where there are locals most likely. What is `called` something is a local of that name."""
+        block = _Block(self._there, self._scope, roots, called)
         return block.lines, [block.text_of(root).text for root in roots]
+
+    def _there(self, node: Expr) -> Text | None:
+        """The text of a leaf, and of what is there already."""
+        if node.op is _CONST:
+            return leaf(node)
+        given = self._names(node)
+        if given is None and node.args:
+            return None
+        text = leaf(node) if given is None else _given_text(given)
+        self._scope.reserve(text.text.partition(".")[0])
+        return text
 
 
 class _Block:
     """The printing of some roots: every node in order of evaluation, its text inline or a local's name."""
 
-    def __init__(self, names: NamesOf, scope: Names, roots: Sequence[Expr], called: Mapping[Expr, str]) -> None:
+    def __init__(
+        self, there: Callable[[Expr], Text | None], scope: Names, roots: Sequence[Expr], called: Mapping[Expr, str]
+    ) -> None:
         self.lines: list[str] = []
         self._called = called
         self._scope = scope
-        self._texts: dict[int, Text] = {}
-        if self._name_leaves(names, roots):
-            return
-        order = evaluation_order(roots, self._below)
-        self._uses = _count_uses(order, roots)
-        self._spine = _spines(order, self._uses, self._texts)
-        self._squares: dict[tuple[int, int], str] = {}
+        self._texts: dict[Expr, Text] = {}
+        self.text_of = self._texts.__getitem__
+        self._squares: dict[tuple[Expr, int], str] = {}
+        inner, given = self._name_leaves(there, roots)
+        self._uses = _count_uses(inner, given, roots)
+        order = [n for n in _in_order(roots, given) if n in self._uses]
+        self._spine = _spines(order, self._uses)
         for node in order:
-            if node.id not in self._texts:
-                self._print(node)
+            self._print(node)
 
-    def text_of(self, node: Expr) -> Text:
-        return self._texts[node.id]
+    def _name_leaves(
+        self, there: Callable[[Expr], Text | None], roots: Sequence[Expr]
+    ) -> tuple[list[Expr], list[Expr]]:
+        """Before any local is named: the texts of what is there already.
 
-    def _name_leaves(self, names: NamesOf, roots: Sequence[Expr]) -> bool:
-        """Before any local is named: the texts of what is there already. Whether that is all there is to print."""
-
-        def below(node: Expr) -> Sequence[Expr]:
-            given = names(node)
-            if given is None:
-                return node.args
-            self._texts[node.id] = _given_text(given)
-            return ()
-
-        for node in topological(roots, below):
-            if node.op in LEAVES and node.id not in self._texts:
-                self._texts[node.id] = compose(node, self.text_of)
-            if node.id in self._texts and node.op is not Op.CONST:
-                self._scope.reserve(self._texts[node.id].text.partition(".")[0])
-        return all(root.id in self._texts for root in roots)
-
-    def _below(self, node: Expr) -> Sequence[Expr]:
-        return () if node.id in self._texts else node.args
+        The nodes that are left to print, arguments before users; and those that are given although they have arguments.
+        """
+        inner: list[Expr] = []
+        given: list[Expr] = []
+        is_done: dict[Expr, bool] = {}  # of what is left to print: whether its arguments are among it
+        stack = list(reversed(roots))
+        while stack:
+            node = stack.pop()
+            if node in self._texts:
+                continue
+            if node not in is_done:
+                text = there(node)
+                if text is None:
+                    is_done[node] = False
+                    stack.append(node)
+                    stack.extend(reversed(node.args))
+                    continue
+                self._texts[node] = text
+                if node.args:
+                    given.append(node)
+            elif not is_done[node]:
+                is_done[node] = True
+                inner.append(node)
+        return inner, given
 
     def _print(self, node: Expr) -> None:
         text = self._composed(node)
@@ -134,41 +178,43 @@ class _Block:
                 break
             self._declare(candidate)
             text = self._composed(node)
-        self._texts[node.id] = text
-        if node.id in self._spine:
+        self._texts[node] = text
+        if node in self._spine:
             self._update(node)
-        elif (self._uses[node.id] > 1 or node in self._called) and not self._is_trivial(node):
+        elif (self._uses[node] > 1 or node in self._called) and not self._is_trivial(node):
             self._declare(node)
 
     def _composed(self, node: Expr) -> Text:
-        limits = clamp_limits(node)
-        if limits is not None and self._is_inline(node.args[0]):
-            return clamp(limits, node.type, self.text_of)
-        exponent = _integer_exponent(node)
-        if exponent is not None:
-            return self._power(node, exponent)
+        if node.op is _MIN:
+            limits = clamp_limits(node)
+            if limits is not None and self._is_inline(node.args[0]):
+                return clamp(limits, node.type, self.text_of)
+        elif node.op is _POW:
+            exponent = _integer_exponent(node)
+            if exponent is not None:
+                return self._power(node, exponent)
         return compose(node, self.text_of)
 
     def _is_trivial(self, node: Expr) -> bool:
         """Not worth a local: a name, its components, its negative."""
-        is_negative = node.op is Op.NEG and self._texts[node.args[0].id].is_name
-        return is_negative or node.op is Op.SWIZZLE or self._texts[node.id].is_name
+        is_negative = node.op is Op.NEG and self._texts[node.args[0]].is_name
+        return is_negative or node.op is Op.SWIZZLE or self._texts[node].is_name
 
     def _is_inline(self, node: Expr) -> bool:
-        return self._uses[node.id] == 1 and not self._texts[node.id].is_name
+        return self._uses.get(node) == 1 and not self._texts[node].is_name
 
     def _worst_argument(self, node: Expr, by_depth: bool) -> Expr | None:
         """The argument to make a local so that the node gets shorter: no name, no number; a constant vector last."""
 
         def burden(e: Expr) -> tuple[bool, int, int]:
-            text = self._texts[e.id]
+            text = self._texts[e]
             return e.op is not Op.CONST, text.depth if by_depth else 0, len(text.text)
 
-        candidates = [a for a in node.args if (a.args or a.type.size > 1) and not self._texts[a.id].is_name]
+        candidates = [a for a in node.args if (a.args or a.type.size > 1) and not self._texts[a].is_name]
         return max(candidates, key=burden, default=None)
 
     def _declare(self, node: Expr) -> None:
-        self._texts[node.id] = Text(self._local(node, self._texts[node.id].text), is_name=True)
+        self._texts[node] = Text(self._local(node, self._texts[node].text), is_name=True)
 
     def _local(self, node: Expr, text: str) -> str:
         name = self._scope.fresh(self._called.get(node) or local_name(node))
@@ -177,20 +223,20 @@ class _Block:
 
     def _update(self, node: Expr) -> None:
         """One step of a chain of min and max: its variable is declared by the first, updated by the others."""
-        before = self._spine[node.id]
+        before = self._spine[node]
         if before is None:
             self._declare(node)
         else:
-            variable = self._texts[before.id]
-            self.lines.append(f"{variable.text} = {self._texts[node.id].text};")
-            self._texts[node.id] = variable
+            variable = self._texts[before]
+            self.lines.append(f"{variable.text} = {self._texts[node].text};")
+            self._texts[node] = variable
 
     def _power(self, node: Expr, exponent: int) -> Text:
         """An integer power, which GLSL's pow does not know for a negative base."""
         base = node.args[0]
-        if not self._texts[base.id].is_name:
+        if not self._texts[base].is_name:
             self._declare(base)
-        name = self._texts[base.id].text
+        name = self._texts[base].text
         if abs(exponent) > LARGEST_PRODUCT:
             sign = "" if exponent % 2 == 0 else f"sign({name}) * "
             count = compose(node.args[1], self.text_of).text
@@ -211,7 +257,7 @@ class _Block:
                 factors.append(name)
             power *= 2
             if power <= exponent:
-                key = (base.id, power)
+                key = (base, power)
                 if key not in self._squares:
                     self._squares[key] = self._scope.fresh(f"square_{power}")
                     self.lines.append(f"{type_name(base.type)} {self._squares[key]} = {name} * {name};")
@@ -221,51 +267,64 @@ class _Block:
 
 def _given_text(given: str) -> Text:
     """A text from outside: a name, a call of plain arguments, or anything, which then needs brackets."""
-    if re.fullmatch(r"[A-Za-z_][\w.]*", given):
+    if given.isidentifier() or _MEMBER.fullmatch(given):
         return Text(given, is_name=True)
-    return Text(given, Level.ATOM if re.fullmatch(r"\w+\([^()]*\)", given) else Level.CHOICE)
+    return Text(given, Level.ATOM if _PLAIN_CALL.fullmatch(given) else Level.CHOICE)
 
 
-def _count_uses(order: Sequence[Expr], roots: Sequence[Expr]) -> dict[int, int]:
-    """How often each node's text will be written. A swizzle is as good as its vector, so it counts as uses of that."""
-    uses = dict.fromkeys((node.id for node in order), 0)
+def _in_order(roots: Sequence[Expr], given: Sequence[Expr]) -> list[Expr]:
+    """The order of evaluation; of what is given, nothing below is computed."""
+    if not given:
+        return evaluation_order(roots)
+    without = set(given)
+    return evaluation_order(roots, lambda node: () if node in without else node.args)
+
+
+def _count_uses(inner: Sequence[Expr], given: Sequence[Expr], roots: Sequence[Expr]) -> dict[Expr, int]:
+    """How often each inner node's text will be written; what is given counts as a use of its arguments.
+
+    A swizzle is as good as its vector, so it counts as uses of that.
+    """
+    uses = dict.fromkeys(inner, 0)
     for root in roots:
-        uses[root.id] += 1
-    for node in reversed(order):
-        alike = node.op is Op.VECTOR and all(a is node.args[0] for a in node.args)
-        for argument in node.args[:1] if alike else node.args:
-            if argument.id in uses:
-                uses[argument.id] += uses[node.id] if node.op is Op.SWIZZLE else 1
+        if root in uses:
+            uses[root] += 1
+    for node in (*given, *reversed(inner)):
+        args, count = node.args, 1
+        if node.op is _SWIZZLE:
+            count = uses.get(node, 1)
+        elif node.op is _VECTOR and args.count(args[0]) == len(args):
+            args = args[:1]
+        for argument in args:
+            if argument in uses:
+                uses[argument] += count
     return uses
 
 
-def _spines(order: Sequence[Expr], uses: dict[int, int], named: dict[int, Text]) -> dict[int, Expr | None]:
+def _spines(order: Sequence[Expr], uses: dict[Expr, int]) -> dict[Expr, Expr | None]:
     """For each step of a long chain of min and max, the step before it, or None for the first."""
-    length: dict[int, int] = {}
-    before: dict[int, Expr | None] = {}
-    inner_steps: set[int] = set()
+    length: dict[Expr, int] = {}
+    before: dict[Expr, Expr | None] = {}
     for node in order:
-        if node.op not in _EXTREMES or node.id in named or clamp_limits(node) is not None:
-            continue
-        steps = [a for a in node.args if a.id in length and uses[a.id] == 1 and a.type is node.type]
-        longest = max(steps, key=lambda a: length[a.id], default=None)
-        before[node.id] = longest
-        length[node.id] = 1 if longest is None else 1 + length[longest.id]
-        if longest is not None:
-            inner_steps.add(longest.id)
-    chains: dict[int, Expr | None] = {}
-    for node in order:
-        if length.get(node.id, 0) >= CHAIN and node.id not in inner_steps:
+        if node.op in _EXTREMES and clamp_limits(node) is None:
+            steps = [a for a in node.args if a in length and uses[a] == 1 and a.type is node.type]
+            longest = max(steps, key=length.__getitem__, default=None)
+            before[node] = longest
+            length[node] = 1 if longest is None else 1 + length[longest]
+    inner_steps = set(before.values())
+    chains: dict[Expr, Expr | None] = {}
+    for node, steps_below in length.items():
+        if steps_below >= CHAIN and node not in inner_steps:
             step: Expr | None = node
             while step is not None:
-                chains[step.id] = before[step.id]
-                step = before[step.id]
+                chains[step] = before[step]
+                step = before[step]
     return chains
 
 
 def _integer_exponent(node: Expr) -> int | None:
     """n if the node is x to the power of the constant integer n (not 0), else None."""
-    if node.op is not Op.POW or not node.args[1].is_constant or node.args[0].type.size < node.args[1].type.size:
+    if node.op is not _POW or not node.args[1].is_constant or node.args[0].type.size < node.args[1].type.size:
         return None
     exponents = set(node.args[1].numbers)
     exponent = exponents.pop()

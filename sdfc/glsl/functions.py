@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum
-from typing import assert_never
+from typing import TypeAlias, assert_never
 
 from sdfc.facts.bend import core_of
 from sdfc.field.derivative import directional, gradient
 from sdfc.field.function import Function
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.field.span import span
+from sdfc.glsl.expression import Printed, printed
 from sdfc.glsl.names import LOCALS, Names, param_name
 from sdfc.plan.steps import Part
-from sdfc.shape.definition import Argument, Kind
+from sdfc.shape.definition import Argument, Definition, Kind
 from sdfc.shape.graph import Apply
 from sdfc.shape.look import Looks
 from sdfc.shape.lower import FAR, Lowering, lower_gauge
@@ -29,6 +30,11 @@ _TYPES = {
     Kind.VECTOR3: Type.VEC3,
     Kind.POINT3: Type.VEC3,
 }
+
+_Formal: TypeAlias = tuple[tuple[str, Type], ...]
+_POINT: _Formal = (("p", Type.VEC3),)
+_POINT_AND_WAY: _Formal = (("p", Type.VEC3), ("d", Type.VEC3))
+_RAY: _Formal = (("o", Type.VEC3), ("d", Type.VEC3), ("grow", Type.FLOAT))
 
 AHEAD = "ray length"  # of the piece of the ray: no name that a parameter of a field can have
 
@@ -57,6 +63,23 @@ class Call:
     arguments: tuple[Expr, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class GlslFunction:
+    """A function of the shader: what it is called, what is said of it, and what it does."""
+
+    name: str
+    doc: str
+    printed: Printed
+
+    @property
+    def text(self) -> str:
+        return self.printed.text(self.name, self.doc)
+
+
+# Of the standard library, by definition and role: no more than there are, and the same in every scene.
+_STANDARD: dict[tuple[str, Role], Printed] = {}
+
+
 class Functions:
     """Collects functions as calls are asked for; equal ones are one."""
 
@@ -64,11 +87,12 @@ class Functions:
         self._graph = graph
         self._lowering = lowering
         self._looks = looks
-        self._by_key: dict[tuple[object, ...], Function] = {}
+        self._by_key: dict[tuple[int, Role], GlslFunction] = {}
+        self._formals: dict[int, _Formal | None] = {}
         self.names = Names((*LOCALS, *(param_name(n) for n in taken)))
 
     @property
-    def all(self) -> tuple[Function, ...]:
+    def all(self) -> tuple[GlslFunction, ...]:
         return tuple(self._by_key.values())
 
     def of_part(self, part: Part, role: Role) -> Call:
@@ -77,18 +101,18 @@ class Functions:
 
     def of_shape(self, shape: Apply, role: Role, name: str) -> Call:
         definition = shape.definition
-        if definition.is_primitive and all(p.kind in _TYPES for p in definition.values):
-            environment: dict[str, Argument] = {p.name: self._input(p.name, p.kind) for p in definition.values}
-            arguments = tuple(a for a in shape.arguments if isinstance(a, Expr))
-            key: tuple[object, ...] = (id(definition), role)
-            label, formal = definition.name, tuple((p.name, _TYPES[p.kind]) for p in definition.values)
-            parametric = self._graph_apply(shape, environment)
-        else:  # lists, counts and children are part of the formula: a function for this one alone
-            arguments, formal, label, parametric = (), (), name, shape
-            key = (shape.id, role)
+        formal = self._formal(definition)
+        if formal is None:  # lists, counts and children are part of the formula: a function for this one alone
+            key = shape.id, role
+            if key not in self._by_key:
+                own = self._made(shape, role, ())
+                self._by_key[key] = GlslFunction(self._fresh(name + role.value), _doc(definition, role), printed(own))
+            return Call(self._by_key[key].name, ())
+        key = id(definition), role
         if key not in self._by_key:
-            self._by_key[key] = self._made(parametric, role, self._fresh(label + role.value), formal)
-        return Call(self._by_key[key].name, arguments)
+            made = self._printed(definition, role, lambda: self._made(self._general(shape), role, formal))
+            self._by_key[key] = GlslFunction(self._fresh(definition.name + role.value), _doc(definition, role), made)
+        return Call(self._by_key[key].name, _numbers(shape))
 
     def joined(self, blend: Apply) -> Call:
         """A blend as a function of its operands' values `a` and `b`."""
@@ -98,22 +122,44 @@ class Functions:
         """A blend's derivatives by `a` and `b`, and its value, as a function of `a` and `b`."""
         return self._blend(blend, Role.WEIGHTS)
 
+    def _formal(self, definition: Definition) -> _Formal | None:
+        """The parameters of functions that all shapes of a definition share; None where each has its own."""
+        key = id(definition)
+        if key not in self._formals:
+            values = definition.values
+            is_shared = definition.is_primitive and all(p.kind in _TYPES for p in values)
+            self._formals[key] = tuple((p.name, _TYPES[p.kind]) for p in values) if is_shared else None
+        return self._formals[key]
+
+    def _printed(self, definition: Definition, role: Role, make: Callable[[], Function]) -> Printed:
+        """A function of a definition alone; those of the standard library are made once."""
+        if not definition.is_standard or role is Role.LOOK:  # the scene's materials are numbered
+            return printed(make())
+        key = definition.name, role
+        if key not in _STANDARD:
+            _STANDARD[key] = printed(make())
+        return _STANDARD[key]
+
     def _blend(self, blend: Apply, role: Role) -> Call:
         definition = blend.definition
         key = (id(definition), role)
         if key not in self._by_key:
-            environment: dict[str, Argument] = {p.name: self._input(p.name, p.kind) for p in definition.values}
-            a, b = self._graph.input("a", Type.FLOAT), self._graph.input("b", Type.FLOAT)
-            first, second = definition.children
-            children = {first.name: lambda _: a, second.name: lambda _: b}
-            result = definition.formula(self._graph.input("p"), environment, children)
-            if role is Role.WEIGHTS:
-                one = self._graph.constant(1.0)
-                slopes = [directional(result, {a: one}), directional(result, {b: one})]
-                result = self._graph.vector(*slopes, result)
-            formal = (("a", Type.FLOAT), ("b", Type.FLOAT), *((p.name, _TYPES[p.kind]) for p in definition.values))
-            self._by_key[key] = Function(self._fresh(definition.name + role.value), formal, result, definition.doc)
-        return Call(self._by_key[key].name, tuple(a for a in blend.arguments if isinstance(a, Expr)))
+            made = self._printed(definition, role, lambda: self._of_operands(definition, role))
+            self._by_key[key] = GlslFunction(self._fresh(definition.name + role.value), definition.doc, made)
+        return Call(self._by_key[key].name, _numbers(blend))
+
+    def _of_operands(self, definition: Definition, role: Role) -> Function:
+        environment: dict[str, Argument] = {p.name: self._input(p.name, p.kind) for p in definition.values}
+        a, b = self._graph.input("a", Type.FLOAT), self._graph.input("b", Type.FLOAT)
+        first, second = definition.children
+        children = {first.name: lambda _: a, second.name: lambda _: b}
+        result = definition.formula(self._graph.input("p"), environment, children)
+        if role is Role.WEIGHTS:
+            one = self._graph.constant(1.0)
+            slopes = [directional(result, {a: one}), directional(result, {b: one})]
+            result = self._graph.vector(*slopes, result)
+        formal = (("a", Type.FLOAT), ("b", Type.FLOAT), *((p.name, _TYPES[p.kind]) for p in definition.values))
+        return Function(definition.name + role.value, formal, result)
 
     def _fresh(self, wanted: str) -> str:
         """A name for a function: never one like those that generated variables have (box_1, s2)."""
@@ -122,60 +168,67 @@ class Functions:
     def _input(self, name: str, kind: Kind) -> Expr:
         return self._graph.input(name, _TYPES[kind])
 
-    def _graph_apply(self, shape: Apply, environment: dict[str, Argument]) -> Apply:
-        arguments = tuple(environment[p.name] for p in shape.definition.values)
-        # not a node of the scene: only its formula is read
+    def _general(self, shape: Apply) -> Apply:
+        """The shape with its definition's parameters for arguments: no node of the scene, only its formula is read."""
         return Apply(
             id=-1 - shape.id,
             span=shape.span,
             dimension=shape.dimension,
             definition=shape.definition,
-            arguments=arguments,
+            arguments=tuple(self._input(p.name, p.kind) for p in shape.definition.values),
             children=shape.children,
         )
 
-    def _made(self, shape: Apply, role: Role, name: str, formal: tuple[tuple[str, Type], ...]) -> Function:
+    def _made(self, shape: Apply, role: Role, formal: _Formal) -> Function:
+        result, leading = self._meaning(shape, role)
+        return Function(shape.definition.name + role.value, (*leading, *formal), result)
+
+    def _meaning(self, shape: Apply, role: Role) -> tuple[Expr, _Formal]:
+        """What a role says of a shape, and of what besides the shape's own parameters."""
         graph = self._graph
         p, o, d = graph.input("p"), graph.input("o"), graph.input("d")
-        doc = shape.definition.doc
-        point, ray = ("p", Type.VEC3), (("o", Type.VEC3), ("d", Type.VEC3))
         match role:
             case Role.VALUE:
-                return Function(name, (point, *formal), self._lowering.value(shape, p), doc)
+                return self._lowering.value(shape, p), _POINT
             case Role.RAY:
-                grow = graph.input("grow", Type.FLOAT)
-                result = intervals(shape, o, d, grow)
-                return Function(name, (*ray, ("grow", Type.FLOAT), *formal), result, doc)
+                return intervals(shape, o, d, graph.input("grow", Type.FLOAT)), _RAY
             case Role.LOOK:
-                return Function(name, (point, *formal), self._looks.index(shape, p), "which material is seen")
+                return self._looks.index(shape, p), _POINT
             case Role.SLOPE | Role.DISTANCE_SLOPE:
-                distance = role is Role.DISTANCE_SLOPE
-                value = self._lowering.value(shape, p) if distance else self.convex_function(shape, p)
-                slope = directional(value, {p: d})
-                return Function(name, (point, ("d", Type.VEC3), *formal), graph.vector(value, slope), doc)
+                value = self._function_of(shape, p, role is Role.DISTANCE_SLOPE)
+                return graph.vector(value, directional(value, {p: d})), _POINT_AND_WAY
             case Role.SURFACE | Role.DISTANCE_SURFACE:
-                distance = role is Role.DISTANCE_SURFACE
-                value = self._lowering.value(shape, p) if distance else self.convex_function(shape, p)
+                value = self._function_of(shape, p, role is Role.DISTANCE_SURFACE)
                 normal = gradient(value, p)
-                result = graph.vector(normal[0], normal[1], normal[2], value)
-                return Function(name, (point, *formal), result, doc)
+                return graph.vector(normal[0], normal[1], normal[2], value), _POINT
             case Role.SPAN:
                 ahead = graph.input(AHEAD, Type.FLOAT)
                 result = span(self._lowering.value(shape, p), p, d, ahead).vector
-                return Function(name, (point, ("d", Type.VEC3), (AHEAD, Type.FLOAT), *formal), result, doc)
+                return result, (*_POINT_AND_WAY, (AHEAD, Type.FLOAT))
             case Role.PARABOLA:
                 value = self._lowering.value(shape, p)
                 core = core_of(shape, value)
-                result = graph.vector(value, core, directional(core, {p: d}))
-                return Function(name, (point, ("d", Type.VEC3), *formal), result, doc)
+                return graph.vector(value, core, directional(core, {p: d})), _POINT_AND_WAY
             case Role.WEIGHTS | Role.JOINED:
                 raise AssertionError("a blend's functions are of its operands' values, not of a point")
             case _:
                 assert_never(role)
 
+    def _function_of(self, shape: Apply, p: Expr, is_distance: bool) -> Expr:
+        return self._lowering.value(shape, p) if is_distance else self.convex_function(shape, p)
+
     def convex_function(self, shape: Apply, p: Expr) -> Expr:
         """The primitive's gauge (sharp, and convex where the solid is), else the formula."""
         return lower_gauge(shape, p) if shape.definition.is_primitive else self._lowering.value(shape, p)
+
+
+def _doc(definition: Definition, role: Role) -> str:
+    return "which material is seen" if role is Role.LOOK else definition.doc
+
+
+def _numbers(shape: Apply) -> tuple[Expr, ...]:
+    """The arguments that a call hands on."""
+    return tuple([a for a in shape.arguments if isinstance(a, Expr)])
 
 
 def intervals(shape: Apply, o: Expr, d: Expr, grow: Expr) -> Expr:

@@ -14,8 +14,13 @@ _COSTLY = frozenset(
 )
 
 
+_CONST, _INPUT, _PARAM = Op.CONST, Op.INPUT, Op.PARAM
+
+
 class Values(Protocol):
     """What is known of values where a body is written."""
+
+    shares: bool  # whether `is_shared` may hold of anything
 
     def __call__(self, expr: Expr) -> str | None:
         """The name of what holds the value, or None."""
@@ -25,13 +30,15 @@ class Values(Protocol):
 
 
 class Done:
-    """Values that are there: names by their expressions' ids."""
+    """Values that are there, by name."""
 
-    def __init__(self, names: Mapping[int, str]) -> None:
+    shares = False
+
+    def __init__(self, names: Mapping[Expr, str]) -> None:
         self._names = names
 
     def __call__(self, expr: Expr) -> str | None:
-        return self._names.get(expr.id)
+        return self._names.get(expr)
 
     def is_shared(self, expr: Expr) -> bool:
         return False
@@ -41,43 +48,44 @@ class Live:
     """Names for expressions over params alone. The params themselves are globals too, copied from their uniforms."""
 
     def __init__(self, hoists: bool = True) -> None:
-        self.hoists = hoists  # not where there is no main to begin with: then they are locals of the functions
-        self._names: dict[int, str] = {}
-        self._kind: dict[int, bool] = {}
+        self.shares = not hoists  # where there is no main to begin with, they are locals of the functions
+        self._names: dict[Expr, str | None] = {}
+        self._is_live: dict[Expr, bool] = {}
         self.values: list[tuple[str, Expr]] = []
 
     def __call__(self, expr: Expr) -> str | None:
         """The global that holds `expr`, or None where it depends on more than params, or on none."""
-        if expr.op is Op.INPUT and expr.value in _CONSTANTS:
+        if expr not in self._names:
+            self._names[expr] = self._named(expr)
+        return self._names[expr]
+
+    def _named(self, expr: Expr) -> str | None:
+        if expr.op is _INPUT and expr.value in _CONSTANTS:
             return str(expr.value)
-        if not self.hoists or expr.op in (Op.CONST, Op.INPUT, Op.PARAM):
+        if self.shares or not expr.args or not self._depends_on_params(expr) or not _is_costly(expr):
             return None
-        if not self._is_live(expr) or not self._is_costly(expr):
-            return None
-        if expr.id not in self._names:
-            self._names[expr.id] = f"live_{len(self.values) + 1}"
-            self.values.append((self._names[expr.id], expr))
-        return self._names[expr.id]
+        name = f"live_{len(self.values) + 1}"
+        self.values.append((name, expr))
+        return name
 
     def is_shared(self, expr: Expr) -> bool:
         """See Values: without a main, the sine of a param is taken once in a function, not once for each part."""
-        return not self.hoists and expr.op in _COSTLY and self._is_live(expr)
+        return self.shares and expr.op in _COSTLY and self._depends_on_params(expr)
 
-    def _is_costly(self, expr: Expr) -> bool:
-        """Whether a global, and the register that it keeps, is worth it: a product or a sum is not."""
-        return any(node.op in _COSTLY for node in topological([expr]))
+    def _depends_on_params(self, expr: Expr) -> bool:
+        """Whether on params, and on nothing else."""
+        known = self._is_live.get(expr)
+        if known is None:
+            known = expr.op is _PARAM
+            for argument in expr.args:
+                if argument.op is not _CONST:
+                    known = self._depends_on_params(argument)
+                    if not known:
+                        break
+            self._is_live[expr] = known
+        return known
 
-    def _is_live(self, expr: Expr) -> bool:
-        if expr.id not in self._kind:
-            for node in topological([expr]):
-                if node.id in self._kind:
-                    continue
-                match node.op:
-                    case Op.PARAM:
-                        self._kind[node.id] = True
-                    case Op.INPUT | Op.CONST:
-                        self._kind[node.id] = False
-                    case _:
-                        constant = all(a.op is Op.CONST or self._kind[a.id] for a in node.args)
-                        self._kind[node.id] = constant and any(self._kind[a.id] for a in node.args)
-        return self._kind[expr.id]
+
+def _is_costly(expr: Expr) -> bool:
+    """Whether a global, and the register that it keeps, is worth it: a product or a sum is not."""
+    return any(node.op in _COSTLY for node in topological([expr]))

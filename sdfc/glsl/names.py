@@ -68,6 +68,7 @@ back before ahead sunk
 """
 LOCALS = tuple(_LOCALS.split())
 
+PARAM_PREFIX = "param_"
 RESERVED = frozenset(_KEYWORDS.split()) | frozenset(_FUNCTIONS.split()) | frozenset(_TEMPLATES.split())
 
 
@@ -84,7 +85,7 @@ def identifier(name: str) -> str:
 
 def param_name(name: str) -> str:
     """The global that holds a param: no variable or function of ours begins like it, so that none can hide it."""
-    return identifier(f"param_{name}")
+    return identifier(f"{PARAM_PREFIX}{name}")
 
 
 class Names:

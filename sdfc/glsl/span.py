@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 from sdfc.field.function import Function
 from sdfc.field.graph import FieldGraph, Type
@@ -48,7 +49,7 @@ class SpanWriter:
         body.add("return vec4(whole.xy, clamp(whole.zw, -1.0, 1.0));")
         head = f"vec4 map_span(vec3 p, vec3 d, float {_LENGTH}) {{"
         text = "\n".join([head, *body.lines, "}", ""])
-        return f"{print_function(_box_span(self._graph), _BOX_SPAN)}\n{text}" if _BOX_SPAN in text else text
+        return f"{_box_span()}\n{text}" if _BOX_SPAN in text else text
 
     def _value(self, part: Part, body: Body, inside: bool) -> str:
         if not math.isfinite(self._slopes[id(part)]):
@@ -79,12 +80,14 @@ def _box(step: Within) -> str:
     return f"{_BOX_SPAN}(p - vec3({centre}), d, {_LENGTH}, vec3({half}))"
 
 
-def _box_span(graph: FieldGraph) -> Function:
-    """The span of a box's distance (templates/lib/distance.glsl)."""
+@cache
+def _box_span() -> str:
+    """The function that gives the span of a box's distance (templates/lib/distance.glsl): the same in every scene."""
+    graph = FieldGraph()
     p, d, half_size = (graph.input(n) for n in ("p", "d", "half_size"))
     length = graph.input(_LENGTH, Type.FLOAT)
     q = graph.abs(p) - half_size
     inside = graph.min(graph.max(q[0], graph.max(q[1], q[2])), 0.0)
     result = span(graph.length(graph.max(q, 0.0)) + inside, p, d, length).vector
     formal = (("p", Type.VEC3), ("d", Type.VEC3), (_LENGTH, Type.FLOAT), ("half_size", Type.VEC3))
-    return Function(_BOX_SPAN, formal, result)
+    return print_function(Function(_BOX_SPAN, formal, result), _BOX_SPAN)

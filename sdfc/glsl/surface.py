@@ -38,7 +38,7 @@ from sdfc.plan.steps import (
     may_have_seams,
 )
 from sdfc.shape.material import Material
-from sdfc.shape.matrix import Matrix
+from sdfc.shape.matrix import transposed
 
 _BACK = "8.0"  # so far back, in roundings
 _NOWHERE = "0.0"  # what is added to a value to rank it, where nothing is
@@ -156,7 +156,7 @@ class SurfaceWriter:
 
     def _is_computed(self, value: Expr) -> bool:
         """Whether its text takes statements, where there is no main that could begin with them."""
-        if self._live.hoists:
+        if not self._live.shares:
             return False
         body = Body(self._live)
         body.text(value)
@@ -267,11 +267,7 @@ class SurfaceWriter:
         """The gradient in the scene's space: A^T g for the map p -> A p + b to the part's own space."""
         assert part.inverse is not None
         own = self._graph.input(name, Type.VEC4)
-        a = part.inverse.linear
-        zero = self._graph.constant(0.0)
-        columns = [(a[0][j], a[1][j], a[2][j]) for j in range(3)]
-        transposed = Matrix((columns[0], columns[1], columns[2]), (zero, zero, zero))
-        g = transposed.direction(own.swizzle("xyz"))
+        g = transposed(part.inverse).direction(own.swizzle("xyz"))
         return self._graph.vector(g[0], g[1], g[2], own[3]) * stretch
 
     def _blend(self, tree: BlendTree, body: Body, sunk: str) -> str:

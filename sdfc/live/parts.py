@@ -10,6 +10,7 @@ from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box
 from sdfc.facts.pointwise import is_pointwise
 from sdfc.facts.ranges import Range, Ranges
+from sdfc.field.graph import Expr
 from sdfc.pipeline import Compiled
 from sdfc.shape.graph import Affine, Apply, Shape, children_of
 from sdfc.shape.matrix import Matrix, identity
@@ -53,10 +54,10 @@ def _range(default: tuple[float, ...], low: float | None, high: float | None) ->
 def _parts(root: Shape, bounds: Bounds) -> Iterator[Part]:
     """In the order of the text, each place of a part once; those without a finite box are left out."""
     stack: list[tuple[Shape, Matrix]] = [(root, identity(bounds.values))]
-    seen: set[tuple[int, tuple[int, ...]]] = set()
+    seen: set[tuple[Shape, tuple[Expr, ...]]] = set()
     while stack and len(seen) < _MOST_VISITED:
         shape, forward = stack.pop()
-        key = (shape.id, forward.key)
+        key = (shape, forward.entries)
         if key in seen:
             continue
         seen.add(key)

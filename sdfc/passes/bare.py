@@ -9,7 +9,7 @@ from sdfc.field.core import same_zeros
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.passes.rewrite import descend
 from sdfc.shape.definition import Definition, Distance, Environment
-from sdfc.shape.graph import Apply, Shape, ShapeGraph, children_of
+from sdfc.shape.graph import Apply, Shape, ShapeGraph, children_of, definitions_of
 
 
 def bare(root: Shape, graph: ShapeGraph, values: FieldGraph) -> Shape:
@@ -18,6 +18,8 @@ def bare(root: Shape, graph: ShapeGraph, values: FieldGraph) -> Shape:
     A distance cubed, or in thousandths, or that levels off, is traced as the distance. What an operation makes of
     a field's values depends on them: below operations nothing changes. Nor where something is claimed of the values.
     """
+    if all(definition.is_standard for definition in definitions_of(root)):
+        return root
     made: dict[int, Definition] = {}
 
     def below(shape: Shape, _: None) -> list[tuple[Shape, None]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sdfc.facts.bounds import Bounds, child_facts
 from sdfc.passes.rewrite import descend
-from sdfc.shape.graph import Apply, Shape, ShapeGraph, children_of
+from sdfc.shape.graph import Apply, Shape, ShapeGraph, children_of, definitions_of
 
 
 def fence(root: Shape, graph: ShapeGraph, bounds: Bounds) -> Shape:
@@ -12,6 +12,9 @@ def fence(root: Shape, graph: ShapeGraph, bounds: Bounds) -> Shape:
     its children, where none of these is empty. Then the operation's field grows however far away, so that what is made
     of it by rounding, hollowing or blending has an end where its child has one. The operation itself is the same solid;
     one that stands alone is looked at only where it is, and is left as it is."""
+
+    if not any(definition.asks_for_boxes for definition in definitions_of(root)):
+        return root
 
     def below(shape: Shape, is_operand: bool) -> list[tuple[Shape, bool]]:
         return [(child, is_operand or isinstance(shape, Apply)) for child in children_of(shape)]
@@ -25,11 +28,12 @@ def fence(root: Shape, graph: ShapeGraph, bounds: Bounds) -> Shape:
 
 def _found(shape: Apply, graph: ShapeGraph, bounds: Bounds) -> Shape:
     """The same with what can be found of its children."""
-    values = shape.definition.values
+    if not shape.definition.asks_for_boxes:
+        return shape
     boxes = [bounds.box(child) for child in shape.children]
-    if all(p.found is None for p in values) or any(box.is_empty for box in boxes):
+    if any(box.is_empty for box in boxes):
         return shape
     facts = child_facts(bounds.values, shape, boxes)
-    pairs = zip(values, shape.arguments, strict=True)
+    pairs = zip(shape.definition.values, shape.arguments, strict=True)
     arguments = [a if p.found is None else p.found(shape.environment, facts) for p, a in pairs]
     return graph.apply(shape.definition, arguments, shape.children, shape.span)

@@ -7,13 +7,11 @@ from typing import TypeAlias
 
 from sdfc.field.graph import Expr, FieldGraph
 from sdfc.shape.graph import Affine
-from sdfc.shape.matrix import Matrix, scaling
+from sdfc.shape.matrix import Linear, Matrix, Numbers, composed, scaling
 from sdfc.shape.stretch import is_similarity, scale_of, smallest_stretch
 
-Numbers: TypeAlias = tuple[float, ...]  # twelve: the linear part row by row, then the offset
 
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Fixed:
     """A constant map and its inverse."""
 
@@ -21,7 +19,7 @@ class Fixed:
     inverse: Numbers
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Live:
     """A map that a param changes, and its inverse."""
 
@@ -34,24 +32,37 @@ _IDENTITY: Numbers = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0
 NOWHERE = Fixed(_IDENTITY, _IDENTITY)
 
 
+def is_nowhere(motion: Motion) -> bool:
+    match motion:
+        case Fixed():
+            return motion is NOWHERE or (motion.forward == _IDENTITY and motion.inverse == _IDENTITY)
+        case Live():
+            return False
+
+
 class Motions:
-    """Composes motions; makes matrices of one field graph."""
+    """Composes motions, equal ones once; makes matrices of one field graph. Most maps turn alike, if at all: what is
+    made of a linear part is remembered."""
 
     def __init__(self, values: FieldGraph) -> None:
         self._values = values
-        self._constants: dict[float, Expr] = {}
+        self._fixed = {(NOWHERE.forward, NOWHERE.inverse): NOWHERE}
+        self._live: dict[tuple[tuple[Expr, ...], tuple[Expr, ...]], Live] = {}
+        self._scales: dict[tuple[Numbers, int], float | None] = {}
+        self._unscaled: dict[tuple[Numbers, Numbers, float, int], tuple[Numbers, Numbers]] = {}
+        self._linears: dict[Numbers, Linear] = {}
 
     def after(self, outer: Motion, inner: Affine) -> Motion:
         """`inner`'s map, then `outer`."""
+        there, back = inner.forward.numbers, inner.inverse.numbers
         match outer:
-            case Fixed():
-                there, back = _numbers(inner.forward), _numbers(inner.inverse)
-                if there is not None and back is not None:
-                    return Fixed(_composed(outer.forward, there), _composed(back, outer.inverse))
-            case Live():
-                pass
-        forward, inverse = self.matrices(outer)
-        return Live(forward.after(inner.forward), inner.inverse.after(inverse))
+            case Fixed() if there is not None and back is not None:
+                if outer is NOWHERE:
+                    return self._as_fixed(there, back)
+                return self._as_fixed(composed(outer.forward, there), composed(back, outer.inverse))
+            case _:
+                forward, inverse = self.matrices(outer)
+                return self._as_live(forward.after(inner.forward), inner.inverse.after(inverse))
 
     def matrices(self, motion: Motion) -> tuple[Matrix, Matrix]:
         """The map and its inverse."""
@@ -65,8 +76,11 @@ class Motions:
         """The factor by which it stretches all directions, where that is one number."""
         match motion:
             case Fixed():
-                rows = [motion.forward[3 * i : 3 * i + dimension] for i in range(dimension)]
-                return scale_of(rows)
+                key = motion.forward[:9], dimension
+                if key not in self._scales:
+                    rows = [motion.forward[3 * i : 3 * i + dimension] for i in range(dimension)]
+                    self._scales[key] = scale_of(rows)
+                return self._scales[key]
             case Live():
                 if not is_similarity(motion.forward, dimension):
                     return None
@@ -77,48 +91,49 @@ class Motions:
         """What is left to do for what has already been scaled: nothing but rounding keeps entries from -1, 0 or 1."""
         match motion:
             case Fixed():
+                key = motion.forward[:9], motion.inverse[:9], scale, dimension
+                if key not in self._unscaled:
+                    self._unscaled[key] = _without_scale(*key)
+                forward, inverse = self._unscaled[key]
                 third = scale if dimension == 3 else 1.0
-                forward = tuple([_tidy(v / (third if i % 3 == 2 else scale)) for i, v in enumerate(motion.forward[:9])])
-                inverse = tuple([v * (third if i // 3 == 2 else scale) for i, v in enumerate(motion.inverse[:9])])
-                shift = [v * s for v, s in zip(motion.inverse[9:], (scale, scale, third), strict=True)]
-                return Fixed((*forward, *motion.forward[9:]), (*map(_tidy, inverse), *shift))
+                shift = [_tidy(v * s) for v, s in zip(motion.inverse[9:], (scale, scale, third), strict=True)]
+                return self._as_fixed((*forward, *motion.forward[9:]), (*inverse, *shift))
             case Live():
                 shrink, grow = self._uniform(1.0 / scale, dimension), self._uniform(scale, dimension)
-                return Live(motion.forward.after(shrink).tidied(), grow.after(motion.inverse).tidied())
+                return self._as_live(motion.forward.after(shrink).tidied(), grow.after(motion.inverse).tidied())
+
+    def _as_fixed(self, forward: Numbers, inverse: Numbers) -> Fixed:
+        key = forward, inverse
+        return self._fixed.get(key) or self._fixed.setdefault(key, Fixed(forward, inverse))
+
+    def _as_live(self, forward: Matrix, inverse: Matrix) -> Live:
+        key = forward.entries, inverse.entries
+        return self._live.get(key) or self._live.setdefault(key, Live(forward, inverse))
 
     def _uniform(self, scale: float, dimension: int) -> Matrix:
         return scaling(self._values, scale, scale, scale if dimension == 3 else 1.0)
 
     def _matrix(self, numbers: Numbers) -> Matrix:
-        e = [self._constants.get(n) or self._constant(n) for n in numbers]
-        return Matrix(((e[0], e[1], e[2]), (e[3], e[4], e[5]), (e[6], e[7], e[8])), (e[9], e[10], e[11]))
+        x, y, z = map(self._constant, numbers[9:])
+        return Matrix(self._linear(numbers[:9]), (x, y, z))
+
+    def _linear(self, numbers: Numbers) -> Linear:
+        if numbers not in self._linears:
+            a, b, c, d, e, f, g, h, i = map(self._constant, numbers)
+            self._linears[numbers] = ((a, b, c), (d, e, f), (g, h, i))
+        return self._linears[numbers]
 
     def _constant(self, number: float) -> Expr:
-        made = self._constants[number] = self._values.constant(number + 0.0)  # -0.0 is 0.0
-        return made
+        return self._values.constant(number + 0.0)  # -0.0 is 0.0
 
 
-def _numbers(given: Matrix) -> Numbers | None:
-    """The entries of a constant map."""
-    first, second, third = given.linear
-    entries = (*first, *second, *third, *given.offset)
-    for entry in entries:
-        if not entry.is_constant:
-            return None
-    return tuple([entry.number for entry in entries])
+def _without_scale(forward: Numbers, inverse: Numbers, scale: float, dimension: int) -> tuple[Numbers, Numbers]:
+    """The linear parts of what is left to do."""
+    third = scale if dimension == 3 else 1.0
+    left = [_tidy(v / (third if i % 3 == 2 else scale)) for i, v in enumerate(forward)]
+    return tuple(left), tuple([_tidy(v * (third if i // 3 == 2 else scale)) for i, v in enumerate(inverse)])
 
 
 def _tidy(entry: float) -> float:
     nearest = float(round(entry)) if abs(entry) <= 1.5 else entry
     return nearest if abs(entry - nearest) < 1e-14 else entry
-
-
-def _composed(a: Numbers, b: Numbers) -> Numbers:
-    """Of a after b."""
-    result: list[float] = []
-    for i in (0, 3, 6):
-        x, y, z = a[i], a[i + 1], a[i + 2]
-        result += [x * b[j] + y * b[j + 3] + z * b[j + 6] for j in (0, 1, 2)]
-    for i, shift in zip((0, 3, 6), a[9:], strict=True):
-        result.append(a[i] * b[9] + a[i + 1] * b[10] + a[i + 2] * b[11] + shift)
-    return tuple(result)

@@ -9,7 +9,7 @@ from sdfc.diagnostics import scene_error
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box, nothing
 from sdfc.facts.pointwise import is_pointwise
-from sdfc.field.graph import FieldGraph
+from sdfc.field.graph import Expr, FieldGraph
 from sdfc.shape.graph import Affine, Apply, Shape, ShapeGraph, children_of
 from sdfc.shape.matrix import Matrix, identity, scaling, translation
 
@@ -57,10 +57,10 @@ def _finite_parts(root: Shape, bounds: Bounds) -> Box:
     result = nothing()
     start = identity(bounds.values)
     stack: list[tuple[Shape, Matrix]] = [(root, start)]
-    seen: set[tuple[int, tuple[int, ...]]] = set()
+    seen: set[tuple[Shape, tuple[Expr, ...]]] = set()
     while stack:
         shape, forward = stack.pop()
-        key = (shape.id, forward.key)
+        key = (shape, forward.entries)
         if key in seen:
             continue
         seen.add(key)

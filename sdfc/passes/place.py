@@ -6,7 +6,7 @@ from typing import assert_never
 
 from sdfc.facts.pointwise import is_pointwise
 from sdfc.field.graph import FieldGraph
-from sdfc.passes.motion import NOWHERE, Motion, Motions
+from sdfc.passes.motion import NOWHERE, Motion, Motions, is_nowhere
 from sdfc.passes.rewrite import descend
 from sdfc.shape.definition import Argument
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, ShapeGraph, Union
@@ -26,7 +26,6 @@ class _Placer:
         self._graph = graph
         self._values = values
         self._motions = Motions(values)
-        self._pointwise: dict[tuple[object, ...], bool] = {}
         self._products: dict[tuple[Argument, float], Argument] = {}
 
     def below(self, shape: Shape, motion: Motion) -> list[tuple[Shape, Motion]]:
@@ -37,6 +36,8 @@ class _Placer:
                 return [(c, motion) for c in shape.children]
             case Complement() | Paint():
                 return [(shape.child, motion)]
+            case Apply() if not shape.children:
+                return []
             case Apply():
                 inner = NOWHERE if self._scale_for_children(shape, motion) is None else motion
                 return [(c, inner) for c in shape.children]
@@ -75,16 +76,10 @@ class _Placer:
 
     def _scale_for_children(self, shape: Apply, motion: Motion) -> float | None:
         """The same, where the map may go on to the children besides."""
-        return self._scale(shape, motion) if self._is_pointwise(shape) else None
-
-    def _is_pointwise(self, shape: Apply) -> bool:
-        key = (id(shape.definition), shape.arguments)
-        if key not in self._pointwise:
-            self._pointwise[key] = is_pointwise(shape, self._values)
-        return self._pointwise[key]
+        return self._scale(shape, motion) if is_pointwise(shape, self._values) else None
 
     def _moved(self, inner: Shape, motion: Motion) -> Shape:
-        if motion == NOWHERE:
+        if is_nowhere(motion):
             return inner
         forward, inverse = self._motions.matrices(motion)
         return self._graph.affine(forward, inverse, inner, inner.span)

@@ -25,6 +25,7 @@ from sdfc.shape.graph import (
     ShapeGraph,
     Union,
     children_of,
+    definitions_of,
     topological,
 )
 from sdfc.shape.matrix import rotation, scaling, translation
@@ -37,10 +38,9 @@ def recognise(root: Shape, graph: ShapeGraph, values: FieldGraph, definition: Lo
     """Afterwards no extrusion of circles, rectangles, convex polygons and their like is left, nor a revolved circle or
     rectangle, but for those that an operation changes: there the field must stay, here the solid does. An extrusion
     commutes with booleans, and so its profile may be one of them."""
-    nodes = [node for node in topological(root) if isinstance(node, Apply)]
-    if not any(_is(node, "extrude") or _is(node, "revolve") for node in nodes):
+    used = {definition.name: definition for definition in definitions_of(root) if definition.is_standard}
+    if "extrude" not in used and "revolve" not in used:
         return root
-    used = {node.definition.name: node.definition for node in nodes if node.definition.is_standard}
     maker = Maker(graph, values, lambda name: used.get(name) or definition(name))
     return descend(root, None, maker.below, maker.made)
 

@@ -18,19 +18,22 @@ def descend(
 ) -> Shape:
     """The root, rewritten: `below` says what a node with what it was given asks for, `make` makes its successor from
     the answers. A node is made once for everything that it is given. Iterative: depth is no limit."""
-    made: dict[tuple[int, Given], Shape] = {}
-    opened: dict[tuple[int, Given], Sequence[tuple[Shape, Given]]] = {}
+    made: dict[tuple[Shape, Given], Shape] = {}
+    opened: dict[tuple[Shape, Given], Sequence[tuple[Shape, Given]]] = {}
     stack = [(root, given)]
     while stack:
-        shape, own = stack[-1]
-        key = (shape.id, own)
-        if key in made:
-            stack.pop()
-        elif key in opened:
-            answers = tuple([made[child.id, handed] for child, handed in opened.pop(key)])
-            made[key] = make(shape, own, answers)
-            stack.pop()
-        else:
-            opened[key] = below(shape, own)
-            stack.extend(reversed(opened[key]))
-    return made[root.id, given]
+        asking = stack.pop()
+        if asking in made:
+            continue
+        asked = opened.pop(asking, None)
+        if asked is None:
+            asked = below(*asking)
+            missing = [one for one in asked if one not in made]
+            if missing:
+                opened[asking] = asked
+                stack.append(asking)
+                missing.reverse()
+                stack += missing
+                continue
+        made[asking] = make(*asking, tuple([made[one] for one in asked]))
+    return made[root, given]

@@ -14,7 +14,7 @@ from sdfc.facts.curvature import convex_shapes
 from sdfc.facts.exactness import is_no_distance
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.rule import Rule, Rules
-from sdfc.field.graph import FieldGraph
+from sdfc.field.graph import FieldGraph, Type
 from sdfc.plan.drawn import drawn
 from sdfc.plan.gather import gathered
 from sdfc.plan.steps import (
@@ -34,7 +34,7 @@ from sdfc.plan.steps import (
     Within,
 )
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, topological
-from sdfc.shape.lower import lower_ray
+from sdfc.shape.lower import generic, lower_ray
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
 from sdfc.shape.stretch import largest_stretch, smallest_stretch
@@ -44,6 +44,9 @@ Rays: TypeAlias = Literal["cheap", "all"]
 _OURS = frozenset(
     {"bounds", "solid", "live", "joined", "near", "far", "ahead"}
 )  # generated names begin so, and end in a number
+
+# by name: no more than there are, and the same in every scene
+_STANDARD_INTERVALS: dict[str, int] = {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +119,6 @@ class Prover:
         self._boxes = 0
         self._pieces = 0
         self._leaves: list[Leaf] = []
-        self._interval_counts: dict[int, int] = {}
 
     @property
     def parts(self) -> tuple[Part, ...]:
@@ -302,14 +304,17 @@ class Prover:
 
     def _intervals(self, shape: Apply) -> int:
         """How many intervals the primitive's ray claim gives: the same for all uses of the definition."""
-        key = id(shape.definition)
-        if key not in self._interval_counts:
-            self._interval_counts[key] = self._counted(shape)
-        return self._interval_counts[key]
+        definition = shape.definition
+        if not definition.is_standard:
+            return self._counted(shape)
+        if definition.name not in _STANDARD_INTERVALS:
+            _STANDARD_INTERVALS[definition.name] = self._counted(shape)
+        return _STANDARD_INTERVALS[definition.name]
 
     def _counted(self, shape: Apply) -> int:
-        o, d = self._values.input("o"), self._values.input("d")
-        return len(lower_ray(shape, o, d, self._values.constant(0.0)))
+        """In the form that is printed, which is remembered until then."""
+        o, d, grow = self._values.input("o"), self._values.input("d"), self._values.input("grow", Type.FLOAT)
+        return len(lower_ray(generic(shape, self._values), o, d, grow))
 
 
 def _is_bare(shape: Shape, painted: set[int]) -> bool:

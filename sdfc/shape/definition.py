@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from functools import cached_property
 from typing import TypeAlias
 
 from sdfc.diagnostics import Span
@@ -122,7 +123,7 @@ class Claims:
     dual: str | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Definition:
     """One `field` declaration. Identity is equality: a scene uses one object for one declaration.
 
@@ -141,13 +142,23 @@ class Definition:
     # (condition, message): the condition over the parameters must hold
     requirements: tuple[tuple[Callable[[Environment], Expr], str], ...] = field(default=())
 
-    @property
+    @cached_property
     def children(self) -> tuple[Parameter, ...]:
-        return tuple(p for p in self.parameters if p.kind.is_child)
+        return tuple([p for p in self.parameters if p.kind.is_child])
 
-    @property
+    @cached_property
     def values(self) -> tuple[Parameter, ...]:
-        return tuple(p for p in self.parameters if not p.kind.is_child)
+        return tuple([p for p in self.parameters if not p.kind.is_child])
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Of the values."""
+        return tuple([p.name for p in self.values])
+
+    @cached_property
+    def asks_for_boxes(self) -> bool:
+        """Whether a value is found from the children's boxes."""
+        return any(p.found is not None for p in self.values)
 
     @property
     def is_primitive(self) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TypeAlias, TypeVar
 
@@ -19,6 +19,7 @@ class Node:
     id: int
     span: Span  # of the first place that asked for it; not part of what makes nodes equal
     dimension: int  # 3 in space, 2 in the plane
+    children: tuple[Shape, ...] = field(default=(), repr=False)  # all that it is made of
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -30,11 +31,10 @@ class Apply(Node):
 
     definition: Definition
     arguments: tuple[Argument, ...] = field(repr=False)
-    children: tuple[Shape, ...] = field(repr=False)
 
     @property
     def environment(self) -> dict[str, Argument]:
-        return {p.name: a for p, a in zip(self.definition.values, self.arguments, strict=True)}
+        return dict(zip(self.definition.names, self.arguments, strict=True))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -48,12 +48,12 @@ class Affine(Node):
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Union(Node):
-    children: tuple[Shape, ...] = field(repr=False)
+    """Every point of a child."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Intersection(Node):
-    children: tuple[Shape, ...] = field(repr=False)
+    """The points of all children."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -79,13 +79,7 @@ Combination = TypeVar("Combination", Union, Intersection)
 
 
 def children_of(shape: Shape) -> tuple[Shape, ...]:
-    match shape:
-        case Apply() | Union() | Intersection():
-            return shape.children
-        case Affine() | Complement() | Paint():
-            return (shape.child,)
-        case Nothing():
-            return ()
+    return shape.children
 
 
 class ShapeGraph:
@@ -110,8 +104,7 @@ class ShapeGraph:
         span: Span,
     ) -> Shape:
         values, parts = tuple(arguments), tuple(children)
-        ids = tuple(tuple(e.id for e in a) if isinstance(a, tuple) else a.id for a in values)
-        key = ("apply", id(definition), ids, tuple(c.id for c in parts))
+        key = (Apply, definition, values, parts)
         return self._nodes.get(key) or self._nodes.setdefault(
             key,
             Apply(
@@ -125,11 +118,17 @@ class ShapeGraph:
         )
 
     def affine(self, forward: Matrix, inverse: Matrix, child: Shape, span: Span) -> Shape:
-        key = ("affine", forward.key, inverse.key, child.id)
+        key = (Affine, forward.entries, inverse.entries, child)
         return self._nodes.get(key) or self._nodes.setdefault(
             key,
             Affine(
-                id=self._next(), span=span, dimension=child.dimension, forward=forward, inverse=inverse, child=child
+                id=self._next(),
+                span=span,
+                dimension=child.dimension,
+                children=(child,),
+                forward=forward,
+                inverse=inverse,
+                child=child,
             ),
         )
 
@@ -138,7 +137,7 @@ class ShapeGraph:
     ) -> Shape:
         if not children:
             return self.nothing(span, dimension or 3)
-        key = (kind.__name__, tuple(c.id for c in children))
+        key = (kind, children)
         return self._nodes.get(key) or self._nodes.setdefault(
             key, kind(id=self._next(), span=span, dimension=children[0].dimension, children=children)
         )
@@ -150,9 +149,9 @@ class ShapeGraph:
         return self._combine(Intersection, tuple(children), span, dimension)
 
     def complement(self, child: Shape, span: Span) -> Shape:
-        key = ("complement", child.id)
+        key = (Complement, child)
         return self._nodes.get(key) or self._nodes.setdefault(
-            key, Complement(id=self._next(), span=span, dimension=child.dimension, child=child)
+            key, Complement(id=self._next(), span=span, dimension=child.dimension, children=(child,), child=child)
         )
 
     def difference(self, first: Shape, rest: Iterable[Shape], span: Span) -> Shape:
@@ -160,20 +159,28 @@ class ShapeGraph:
         return self.intersection((first, *(self.complement(r, r.span) for r in rest)), span)
 
     def paint(self, material: Material, child: Shape, span: Span) -> Shape:
-        key = ("paint", id(material), child.id)
+        key = (Paint, material, child)
         return self._nodes.get(key) or self._nodes.setdefault(
-            key, Paint(id=self._next(), span=span, dimension=child.dimension, material=material, child=child)
+            key,
+            Paint(
+                id=self._next(),
+                span=span,
+                dimension=child.dimension,
+                children=(child,),
+                material=material,
+                child=child,
+            ),
         )
 
     def nothing(self, span: Span, dimension: int = 3) -> Shape:
-        key = ("nothing", dimension)
+        key = (Nothing, dimension)
         return self._nodes.get(key) or self._nodes.setdefault(
             key, Nothing(id=self._next(), span=span, dimension=dimension)
         )
 
     def with_children(self, shape: Shape, children: tuple[Shape, ...]) -> Shape:
         """The same node over other children (the node itself where they are the same)."""
-        if all(a is b for a, b in zip(children, children_of(shape), strict=True)):
+        if children == shape.children:
             return shape
         match shape:
             case Apply():
@@ -192,20 +199,27 @@ class ShapeGraph:
                 return shape
 
 
-def topological(root: Shape) -> Iterator[Shape]:
+def topological(root: Shape) -> list[Shape]:
     """Every node below the root, children before parents, each once. Iterative: depth is no limit."""
-    done: set[int] = set()
-    stack: list[tuple[Shape, bool]] = [(root, False)]
+    order: list[Shape] = []
+    done: set[Shape] = set()
+    stack = [root]
     while stack:
-        node, expanded = stack.pop()
-        if node.id in done:
+        node = stack.pop()
+        if node in done:
             continue
-        if expanded:
-            done.add(node.id)
-            yield node
+        if done.issuperset(node.children):
+            done.add(node)
+            order.append(node)
         else:
-            stack.append((node, True))
-            stack.extend((c, False) for c in reversed(children_of(node)) if c.id not in done)
+            stack.append(node)  # again, when its children are there
+            stack += node.children[::-1]
+    return order
+
+
+def definitions_of(root: Shape) -> list[Definition]:
+    """All that are applied below the root, each once."""
+    return list(dict.fromkeys([node.definition for node in topological(root) if isinstance(node, Apply)]))
 
 
 __all__ = [
@@ -220,5 +234,6 @@ __all__ = [
     "ShapeGraph",
     "Union",
     "children_of",
+    "definitions_of",
     "topological",
 ]

@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
 from typing import assert_never
 
-from sdfc.field.graph import Expr
+from sdfc.field.graph import Expr, FieldGraph, Type
+from sdfc.shape.definition import Kind
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union
 from sdfc.shape.stretch import smallest_stretch
 
+# what a parameter is as one of a function
+FORMAL: Mapping[Kind, Type] = MappingProxyType(
+    {
+        Kind.NUMBER: Type.FLOAT,
+        Kind.LENGTH: Type.FLOAT,
+        Kind.ANGLE: Type.FLOAT,
+        Kind.VECTOR2: Type.VEC2,
+        Kind.POINT2: Type.VEC2,
+        Kind.VECTOR3: Type.VEC3,
+        Kind.POINT3: Type.VEC3,
+    }
+)
 FAR = 1e9  # the value of the empty solid: its square is finite in float32 (ALGORITHMS D3)
 
 
@@ -68,10 +83,22 @@ def lower(shape: Shape, p: Expr) -> Expr:
     return Lowering().value(shape, p)
 
 
+def generic(shape: Apply, graph: FieldGraph) -> Apply:
+    """A primitive as it is printed, once for all of its kind: of inputs that are named as its parameters. Itself where
+    lists and counts are part of the formula."""
+    values = shape.definition.values
+    if not all(p.kind in FORMAL for p in values):
+        return shape
+    arguments = tuple([graph.input(p.name, FORMAL[p.kind]) for p in values])
+    return replace(shape, id=-1 - shape.id, arguments=arguments)  # not a node of the scene
+
+
 def lower_ray(shape: Apply, o: Expr, d: Expr, grow: Expr) -> tuple[tuple[Expr, Expr], ...]:
     """The closed-form intervals of a primitive along o + t d, in the primitive's own space."""
-    assert shape.definition.claims.ray is not None
-    return shape.definition.claims.ray(o, d, grow, shape.environment)
+    ray = shape.definition.claims.ray
+    assert ray is not None
+    asked = (lower_ray, shape.definition, shape.arguments, o, d, grow)
+    return o.graph.remembered(asked, lambda: ray(o, d, grow, shape.environment))
 
 
 def lower_gauge(shape: Apply, p: Expr) -> Expr:

@@ -3,49 +3,50 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeAlias
 
 from sdfc.field.graph import Expr, FieldGraph, Op, Operand
 
-Row = tuple[Expr, Expr, Expr]
+Row: TypeAlias = tuple[Expr, Expr, Expr]
+Linear: TypeAlias = tuple[Row, Row, Row]
+Numbers: TypeAlias = tuple[float, ...]  # twelve: the linear part row by row, then the offset
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Matrix:
     """p -> linear p + offset, in space. In the plane the third row and column are the identity's."""
 
-    linear: tuple[Row, Row, Row]
+    linear: Linear
     offset: Row
 
-    @property
-    def key(self) -> tuple[int, ...]:
-        return tuple(e.id for row in (*self.linear, self.offset) for e in row)
-
-    @property
+    @cached_property
     def entries(self) -> tuple[Expr, ...]:
-        return tuple(e for row in (*self.linear, self.offset) for e in row)
+        first, second, third = self.linear
+        return (*first, *second, *third, *self.offset)
+
+    @cached_property
+    def numbers(self) -> Numbers | None:
+        """The entries, where all are constants."""
+        numbers: list[float] = []
+        for entry in self.entries:
+            if not entry.is_constant:
+                return None
+            numbers += entry.numbers
+        return tuple(numbers)
 
     @property
     def is_constant(self) -> bool:
-        return all(e.is_constant for e in self.entries)
+        return self.numbers is not None
 
     def after(self, first: Matrix) -> Matrix:
         """The map that does `first`, then this one."""
-        if self.is_constant and first.is_constant:
-            return self._numbers_after(first)
+        if self.numbers is not None and first.numbers is not None:
+            return matrix_of(self.offset[0].graph, composed(self.numbers, first.numbers))
         rows = [_combine(row, first.linear) for row in self.linear]
         moved = self.point(first.offset)
         return Matrix((rows[0], rows[1], rows[2]), moved)
-
-    def _numbers_after(self, first: Matrix) -> Matrix:
-        """The same in plain numbers: scenes of thousands of parts compose mostly constants."""
-        graph = self.offset[0].graph
-        rows, moved = [[e.number for e in row] for row in self.linear], [e.number for e in self.offset]
-        columns = list(zip(*([e.number for e in row] for row in first.linear), strict=True))
-        shift = [e.number for e in first.offset]
-        linear: list[list[Operand]] = [[_sum_of_products(row, column) for column in columns] for row in rows]
-        return matrix(graph, linear, [_sum_of_products(row, shift) + m for row, m in zip(rows, moved, strict=True)])
 
     def tidied(self) -> Matrix:
         """For a rigid map: entries that only rounding keeps from -1, 0 or 1 are made exact."""
@@ -98,20 +99,31 @@ def _tidy(entry: Expr) -> Expr:
     return entry.graph.constant(nearest) if abs(entry.number - nearest) < 1e-14 else entry
 
 
-def _sum_of_products(a: Sequence[float], b: Sequence[float]) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+def composed(a: Numbers, b: Numbers) -> Numbers:
+    """Of a after b, in plain numbers: scenes of thousands of parts compose mostly constants."""
+    linear: list[float] = []
+    offset: list[float] = []
+    for i, shift in zip((0, 3, 6), a[9:], strict=True):
+        x, y, z = a[i : i + 3]
+        linear += (x * b[0] + y * b[3] + z * b[6], x * b[1] + y * b[4] + z * b[7], x * b[2] + y * b[5] + z * b[8])
+        offset.append(x * b[9] + y * b[10] + z * b[11] + shift)
+    return (*linear, *offset)
+
+
+def matrix_of(graph: FieldGraph, numbers: Numbers) -> Matrix:
+    """The constant map of these entries."""
+    a, b, c, d, e, f, g, h, i, x, y, z = map(graph.constant, numbers)
+    return Matrix(((a, b, c), (d, e, f), (g, h, i)), (x, y, z))
 
 
 def _dot(a: Row, b: Row) -> Expr:
-    kept = [(x, y) for x, y in zip(a, b, strict=True) if y.is_constant or not _is(x, 0.0)]
-    if not kept:
-        return a[0]
-    first, *others = (y if _is(x, 1.0) else x * y for x, y in kept)
-    return sum(others, first)
-
-
-def _is(entry: Expr, number: float) -> bool:
-    return entry.is_constant and entry.numbers == (number,)
+    total: Expr | None = None
+    for x, y in zip(a, b, strict=True):
+        factor = x.numbers[0] if x.is_constant else None
+        if factor != 0.0 or y.is_constant:
+            product = y if factor == 1.0 else x * y
+            total = product if total is None else total + product
+    return a[0] if total is None else total
 
 
 def _combine(row: Row, matrix: tuple[Row, Row, Row]) -> Row:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
+from typing import TypeAlias, TypeVar
 
 from sdfc.field.folding import fold
-from sdfc.field.graph import COMPARISON, LOGIC, Expr, Op, topological
+from sdfc.field.graph import COMPARISON, LOGIC, Expr, FieldGraph, Op, topological
 from sdfc.shape.matrix import Matrix
 
-Rows = Sequence[Sequence[float]]
+Rows: TypeAlias = Sequence[Sequence[float]]
+Entries: TypeAlias = tuple[tuple[Expr, ...], ...]
+T = TypeVar("T")
 
 # What is not analytic is a variable of its own: an identity that holds whatever its value is holds for the real one.
 _JUMPS = frozenset({Op.ABS, Op.SIGN, Op.FLOOR, Op.ROUND, Op.MIN, Op.MAX, Op.MOD, Op.SELECT}) | COMPARISON | LOGIC
@@ -22,23 +25,26 @@ _MARGIN = 1e-9  # outward: singular values are square roots of rounded sums
 
 def is_similarity(matrix: Matrix, dimension: int = 3) -> bool:
     """Whether all directions stretch alike, for every value of the params."""
-    return _always(matrix, dimension, _is_similar)
+    rows = _linear(matrix, dimension)
+    return _graph(matrix).remembered((is_similarity, rows), lambda: _always(rows, _is_similar))
 
 
 def smallest_stretch(matrix: Matrix, dimension: int = 3) -> Expr:
     """A lower bound of |M v| / |v|; exact for constants, similarities and maps that keep the axes at right angles."""
-    return _stretch(matrix, dimension, is_largest=False)
+    rows = _linear(matrix, dimension)
+    return _graph(matrix).remembered((smallest_stretch, rows), lambda: _stretch(rows, is_largest=False))
 
 
 def largest_stretch(matrix: Matrix, dimension: int = 3) -> Expr:
     """An upper bound of |M v| / |v|; exact for constants, similarities and maps that keep the axes at right angles."""
-    return _stretch(matrix, dimension, is_largest=True)
+    rows = _linear(matrix, dimension)
+    return _graph(matrix).remembered((largest_stretch, rows), lambda: _stretch(rows, is_largest=True))
 
 
 def scale_of(rows: Rows) -> float | None:
     """The factor by which a map of plain numbers stretches all directions, or None where they differ."""
     factor = rows[0][0]
-    if all(entry == (factor if i == j else 0.0) for i, row in enumerate(rows) for j, entry in enumerate(row)):
+    if _entries(rows) == [factor if i == j else 0.0 for i in range(len(rows)) for j in range(len(rows))]:
         return abs(factor) if 0.0 < abs(factor) < math.inf else None  # most maps: nothing is turned
     columns = list(zip(*rows, strict=True))
     first = columns[0]
@@ -77,11 +83,22 @@ def _rotated(a: list[float], b: list[float]) -> bool:
 
 
 def _dot(a: Sequence[float], b: Sequence[float]) -> float:
-    return sum([x * y for x, y in zip(a, b, strict=True)])
+    total = 0.0
+    for x, y in zip(a, b, strict=True):
+        total += x * y
+    return total
 
 
-def _linear(matrix: Matrix, dimension: int) -> list[list[Expr]]:
-    return [list(row[:dimension]) for row in matrix.linear[:dimension]]
+def _graph(matrix: Matrix) -> FieldGraph:
+    return matrix.offset[0].graph
+
+
+def _linear(matrix: Matrix, dimension: int) -> Entries:
+    return matrix.linear if dimension == 3 else tuple([row[:dimension] for row in matrix.linear[:dimension]])
+
+
+def _entries(rows: Sequence[Sequence[T]]) -> list[T]:
+    return [entry for row in rows for entry in row]
 
 
 def _transposed(rows: Rows) -> Rows:
@@ -91,41 +108,48 @@ def _transposed(rows: Rows) -> Rows:
 # --- what holds for all values of the params
 
 
-def _always(matrix: Matrix, dimension: int, holds: Callable[[Rows], bool]) -> bool:
-    count = 0
-    for rows in _samples(matrix, dimension):
-        count += 1
-        if not holds(rows):
-            return False
-    return count > 0
+def _always(rows: Entries, holds: Callable[[Rows], bool]) -> bool:
+    samples = _samples(rows)
+    return bool(samples) and all(map(holds, samples))
 
 
-def _samples(matrix: Matrix, dimension: int) -> Iterator[Rows]:
+def _samples(rows: Entries) -> Sequence[Rows]:
     """The linear part: itself, or at some choices of the params (none where too few are defined)."""
-    rows = _linear(matrix, dimension)
-    entries = [e for row in rows for e in row]
-    if all(e.is_constant for e in entries):
-        yield [[e.number for e in row] for row in rows]
-        return
-    order = list(topological(entries, lambda node: () if node.op in _FREE else node.args))
+    constant = _constant(rows)
+    return [constant] if constant is not None else rows[0][0].graph.remembered((_samples, rows), lambda: _sampled(rows))
+
+
+def _constant(rows: Entries) -> Rows | None:
+    """The entries, where all are constants."""
+    for row in rows:
+        for entry in row:
+            if not entry.is_constant:
+                return None
+    return [[entry.numbers[0] for entry in row] for row in rows]
+
+
+def _sampled(rows: Entries) -> Sequence[Rows]:
+    entries, dimension = _entries(rows), len(rows)
+    order = topological(entries, lambda node: () if node.op in _FREE else node.args)
     sampled = [_numbers(order, entries, index) for index in range(len(_SIZES))]
     finite = [numbers for numbers in sampled if all(map(math.isfinite, numbers))]
-    if len(finite) >= _ENOUGH:
-        yield from ([n[k : k + dimension] for k in range(0, dimension**2, dimension)] for n in finite)
+    if len(finite) < _ENOUGH:
+        return []
+    return [[n[k : k + dimension] for k in range(0, dimension**2, dimension)] for n in finite]
 
 
 def _numbers(order: Sequence[Expr], entries: Sequence[Expr], index: int) -> list[float]:
     """The entries where each variable has some value."""
-    known: dict[int, tuple[float, ...]] = {}
+    known: dict[Expr, tuple[float, ...]] = {}
     for node in order:
-        if node.op in _FREE:
+        if node.is_constant:
+            known[node] = node.numbers
+        elif node.op in _FREE:
             draws = [(0.618034 * (len(known) + 1) + 0.445042 * k + 0.147 * index) % 1.0 for k in range(node.type.size)]
-            known[node.id] = tuple([_SIZES[index] * (0.05 + d if index % 2 else 2.0 * d - 1.0) for d in draws])
-        elif node.is_constant:
-            known[node.id] = node.numbers
+            known[node] = tuple([_SIZES[index] * (0.05 + d if index % 2 else 2.0 * d - 1.0) for d in draws])
         else:
-            known[node.id] = fold(node.op, [known[a.id] for a in node.args], node.type.size, node.value)
-    return [known[e.id][0] for e in entries]
+            known[node] = fold(node.op, [known[a] for a in node.args], node.type.size, node.value)
+    return [known[e][0] for e in entries]
 
 
 def _is_similar(rows: Rows) -> bool:
@@ -145,20 +169,19 @@ def _are_orthogonal(rows: Rows) -> bool:
 # --- the bounds
 
 
-def _stretch(matrix: Matrix, dimension: int, is_largest: bool) -> Expr:
-    graph = matrix.offset[0].graph
-    rows = _linear(matrix, dimension)
-    if all(e.is_constant for row in rows for e in row):
-        numbers = [[e.number for e in row] for row in rows]
-        return graph.constant(scale_of(numbers) or _outward(singular_values(numbers), is_largest))
-    samples = list(_samples(matrix, dimension))
+def _stretch(rows: Entries, is_largest: bool) -> Expr:
+    graph, dimension = rows[0][0].graph, len(rows)
+    constant = _constant(rows)
+    if constant is not None:
+        return graph.constant(scale_of(constant) or _outward(singular_values(constant), is_largest))
+    samples = _samples(rows)
     if samples and all(_is_similar(s) for s in samples):
         return _length_of_all(rows, samples)
     if samples and all(_are_orthogonal(s) for s in samples):
         return _extreme([_length([row[j] for row in rows]) for j in range(dimension)], is_largest)
     if samples and all(_are_orthogonal(_transposed(s)) for s in samples):
         return _extreme([_length(row) for row in rows], is_largest)
-    norm = _norm([e for row in rows for e in row])
+    norm = _norm(_entries(rows))
     if is_largest:
         return norm
     if dimension == 2:

@@ -123,9 +123,9 @@ def test_a_box_moved_is_as_tight_as_the_numbers_say() -> None:
 
 def test_boxes_without_end_move() -> None:
     sea = Box((-math.inf, -math.inf, -1.0), (math.inf, 1.0, math.inf))
-    moved = sea.moved([[1.0, 1.0, 0.0], [0.0, -2.0, 0.0], [0.0, 0.0, 0.0]], [1.0, 0.0, 5.0])
+    moved = sea.moved([1.0, 1.0, 0.0, 0.0, -2.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 5.0])
     assert moved == Box((-math.inf, -2.0, 5.0), (math.inf, math.inf, 5.0))
-    assert nothing().moved([[1.0, 0.0, 0.0]] * 3, [0.0] * 3).is_empty
+    assert nothing().moved([1.0, 0.0, 0.0] * 3 + [0.0] * 3).is_empty
 
 
 def test_boxes_of_deep_trees() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from sdfc.field.bend import BendEvaluator, bend_bounds
+from sdfc.field.bend import BendEvaluator, _Search, bend_bounds
 from sdfc.field.core import is_positive, signed_core
 from sdfc.field.graph import LEAVES, Expr, FieldGraph, Op, Type, inputs_of, params_of, substitute
 from sdfc.field.interval_bends import BENDS
@@ -157,3 +158,38 @@ def test_a_convex_part_that_is_stretched_and_taken_away_smoothly(solid: str) -> 
     from sdfc.pipeline import compile_scene, load
 
     assert "march" in compile_scene(load(Source("test.sdf", f"scene {{ {solid} }}"))).glsl("depth")
+
+
+def test_what_is_infinite_at_a_hub_is_given_up_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    graph = FieldGraph()
+    p = graph.input("p")
+    ring = graph.length(graph.vector(graph.length(p.swizzle("xz")) - 0.7, p[1])) - 0.1
+    looks: list[int] = []
+    evaluate = BendEvaluator.__call__
+
+    def counted(self: BendEvaluator, *given: Any) -> tuple[Interval, Interval]:
+        looks.append(given[0].lo.shape[1])
+        return evaluate(self, *given)
+
+    monkeypatch.setattr(BendEvaluator, "__call__", counted)
+    assert bend_bounds(ring, [-1.0, -0.2, -1.0], [1.0, 0.2, 1.0], [{}, {}], {}) == [math.inf, math.inf]
+    assert looks == [2, 16]
+
+
+@settings(max_examples=100, suppress_health_check=list(HealthCheck))
+@given(tree=trees(Type.FLOAT), size=st.floats(0.1, 3.0))
+def test_what_is_given_up_has_no_bound(tree: Recipe, size: float) -> None:
+    """Cutting boxes to the end finds none either."""
+    graph = FieldGraph()
+    p = graph.input("p")
+    parts = {Type.FLOAT: p[1], Type.VEC2: p.swizzle("zx"), Type.VEC3: p, Type.VEC4: p.swizzle("xyzy")}
+    whole = tree.build(graph)
+    root = substitute(whole, {i: parts[i.type] for i in inputs_of(whole)})
+    if not inputs_of(root):
+        return
+    piece = {n: (np.ravel(PARAM_VALUES[n]).tolist(),) * 2 for n in params_of([root])}
+    given = root, [-size] * 3, [size] * 3, [piece], {}
+    (bend,) = bend_bounds(*given, boxes=128)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(_Search, "is_vain", lambda self: False)
+        assert bend_bounds(*given, boxes=128) == [bend]

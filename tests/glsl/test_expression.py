@@ -22,9 +22,11 @@ from hypothesis import strategies as st
 from sdfc.diagnostics import InternalError
 from sdfc.field.derivative import gradient
 from sdfc.field.function import Function
-from sdfc.field.graph import BINARY, COMPARISON, LEAVES, LOGIC, UNARY, Expr, FieldGraph, Op, Type
+from sdfc.field.graph import BINARY, COMPARISON, LEAVES, LOGIC, UNARY, Expr, FieldGraph, Op, Type, topological
 from sdfc.field.numeric import Evaluator
+from sdfc.glsl.composition import Text, leaf
 from sdfc.glsl.expression import DEPTH, WIDTH, Printer, print_function
+from sdfc.glsl.in_place import InPlace, NeedsLocalError
 from sdfc.glsl.names import RESERVED, Names, identifier, literal, param_name, type_name
 
 PARAMETERS = tuple(INPUTS.items())
@@ -227,6 +229,11 @@ def test_a_parameter_gives_way_to_a_uniform_of_the_same_name() -> None:
     text = print_function(Function("sphere", (("p", Type.VEC3), ("radius", Type.FLOAT)), radius))
     assert text.splitlines()[0] == "float sphere(vec3 p, float radius) {"
     assert "length(p) - radius - param_radius" in text
+    text = print_function(Function("number", (("param_radius", Type.FLOAT),), graph.input("param_radius", Type.FLOAT)))
+    assert text == "float number(float param_radius) {\n    return param_radius;\n}\n"
+    both = graph.input("param_radius", Type.FLOAT) - graph.param("radius")
+    text = print_function(Function("number", (("param_radius", Type.FLOAT),), both))
+    assert text == "float number(float param_radius_2) {\n    return param_radius_2 - param_radius;\n}\n"
 
 
 def test_the_printer_uses_what_has_a_name() -> None:
@@ -256,6 +263,33 @@ def test_output_does_not_depend_on_what_else_the_graph_holds(recipe: Recipe) -> 
     for i in range(50):
         used.length(used.input("other") * (i + 0.25))
     assert print_function(function(recipe.build(used))) == print_function(function(recipe.build(FieldGraph())))
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(recipes=st.lists(st.sampled_from([Type.BOOL, Type.FLOAT, *VECTORS]).flatmap(lambda t: trees(t, 4)), max_size=3))
+def test_what_is_written_in_place_is_what_a_block_writes(recipes: list[Recipe]) -> None:
+    graph = FieldGraph()
+    roots = [recipe.build(graph) for recipe in recipes]
+    known = {graph.input("p"): "o", **{n: f"live_{n.id}" for n in topological(roots) if n.op is Op.SQRT}}
+    for names in ({}, known):
+        assert Printer(names.get).statements(roots) == Printer(names.get).block(roots)
+
+
+def test_few_expressions_need_a_block() -> None:
+    graph = FieldGraph()
+    p, t = graph.input("p"), graph.input("t", Type.FLOAT)
+    turned = graph.vector(p[0] * 0.5 - p[1], -p[1], 0.25)
+    assert InPlace(leaf_of).texts([p - graph.constant(1.0, 2.0, 3.0), turned, graph.clamp(t, 0.0, 1.0), -p[2]]) == [
+        *("p - vec3(1.0, 2.0, 3.0)", "vec3(p.x * 0.5 - p.y, -p.y, 0.25)", "clamp(t, 0.0, 1.0)", "-p.z")
+    ]
+    shared = graph.abs(p)
+    for root in (shared * shared, graph.call(Op.POW, t + 1.0, 2.0), graph.length(turned + shared) + turned[0]):
+        with pytest.raises(NeedsLocalError):
+            InPlace(leaf_of).texts([root])
+
+
+def leaf_of(node: Expr) -> Text | None:
+    return None if node.args else leaf(node)
 
 
 def test_printing_needs_no_numpy() -> None:

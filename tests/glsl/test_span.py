@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sdfc import pipeline
 from sdfc.diagnostics import Source
 from sdfc.glsl.distance import DistanceWriter
-from sdfc.glsl.expression import literal, print_function
+from sdfc.glsl.expression import literal
 from sdfc.glsl.functions import Functions
 from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
@@ -55,7 +55,7 @@ def written(compiled: Compiled) -> str:
     assert not live.values, "a value that a uniform decides has nowhere to live here"
     library = [(LIBRARY / name).read_text() for name in ("distance.glsl", "span.glsl")]
     constant = f"const float FAR = {literal(FAR)};\n"
-    return "\n".join([constant, *library, *(print_function(f) for f in functions.all), *many.tables, *texts])
+    return "\n".join([constant, *library, *(f.text for f in functions.all), *many.tables, *texts])
 
 
 def run(gl: moderngl.Context, text: str, o: Array, d: Array, s: Array) -> tuple[NDArray[np.float32], Array]:

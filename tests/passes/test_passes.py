@@ -164,3 +164,14 @@ def test_a_scene_that_is_too_small_for_float64_is_refused() -> None:
 
     with pytest.raises(SceneError, match="less than 1e-100 across"):
         compile_scene(load(Source("test.sdf", "scene { sphere(1e-320) }")))
+
+
+@checked
+@given(data=st.data())
+def test_what_is_placed_stays_so(data: st.DataObject) -> None:
+    """Until something is pruned: that it need not be placed again is what the pipeline goes by."""
+    world = World()
+    after = data.draw(solids(world, MENU))
+    for name in ("recognise", "flatten", "paint", "place", "negate", "bare"):
+        after = RUN[name](after, world)
+    assert RUN["place"](after, world) is after
