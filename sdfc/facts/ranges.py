@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from sdfc.field.graph import Expr
+from sdfc.record import dataclass
 
 if TYPE_CHECKING:
     from sdfc.field.interval import ConstantBounds

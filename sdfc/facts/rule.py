@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from sdfc.facts.bend import Bends, core_of
 from sdfc.facts.bounds import Bounds
@@ -13,6 +13,7 @@ from sdfc.facts.exactness import exactness
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.ranges import Ranges
 from sdfc.field.graph import Expr, Type
+from sdfc.record import dataclass
 from sdfc.shape.definition import Exactness
 from sdfc.shape.graph import Apply
 from sdfc.shape.lower import Lowering

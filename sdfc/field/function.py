@@ -1,9 +1,10 @@
 """A named function over the field graph: what is printed as one GLSL function and evaluated as one NumPy call."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from sdfc.field.graph import Expr, Type
+from sdfc.record import dataclass
 
 
 @dataclass(frozen=True, slots=True)

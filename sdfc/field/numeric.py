@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy.typing as npt
 
 from sdfc.field.graph import LEAVES, Expr, Op, Type
 from sdfc.field.order import evaluation_order
+from sdfc.record import dataclass
 
 Array: TypeAlias = npt.NDArray[Any]
 Real: TypeAlias = type[np.floating[Any]]

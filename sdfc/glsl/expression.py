@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TypeAlias
 
@@ -19,6 +18,7 @@ from sdfc.field.order import evaluation_order
 from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose, leaf
 from sdfc.glsl.in_place import CHAIN, DEPTH, WIDTH, InPlace, NeedsLocalError
 from sdfc.glsl.names import PARAM_PREFIX, Names, identifier, literal, param_name, type_name
+from sdfc.record import dataclass
 
 __all__ = ["DEPTH", "WIDTH", "Printed", "Printer", "literal", "print_function", "printed", "type_name"]
 

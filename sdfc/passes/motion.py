@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from sdfc.field.graph import Expr, FieldGraph
+from sdfc.record import dataclass
 from sdfc.shape.graph import Affine
 from sdfc.shape.matrix import Linear, Matrix, Numbers, composed, scaling
 from sdfc.shape.stretch import is_similarity, scale_of, smallest_stretch

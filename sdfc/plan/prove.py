@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal, TypeAlias, assert_never
 
 from sdfc.diagnostics import SceneError, scene_error
@@ -33,6 +33,7 @@ from sdfc.plan.steps import (
     Tangent,
     Within,
 )
+from sdfc.record import dataclass
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, topological
 from sdfc.shape.lower import generic, lower_ray
 from sdfc.shape.material import Material

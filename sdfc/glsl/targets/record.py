@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal, TypeAlias
 
 from sdfc.glsl.source import Item
+from sdfc.record import dataclass
 
 Part: TypeAlias = Literal["field", "tracer", "full"]
 PARTS: tuple[Part, ...] = ("field", "tracer", "full")
