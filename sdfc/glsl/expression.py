@@ -15,7 +15,7 @@ from typing import TypeAlias
 from sdfc.field.function import Function
 from sdfc.field.graph import LEAVES, Expr, Op, topological
 from sdfc.field.order import evaluation_order
-from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose
+from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose, operands
 from sdfc.glsl.names import Names, identifier, literal, param_name, type_name
 
 __all__ = ["Printer", "literal", "print_function", "type_name"]
@@ -164,7 +164,7 @@ class _Block:
             text = self._texts[e.id]
             return e.op is not Op.CONST, text.depth if by_depth else 0, len(text.text)
 
-        candidates = [a for a in node.args if (a.args or a.type.size > 1) and not self._texts[a.id].is_name]
+        candidates = [a for a in operands(node) if (a.args or a.type.size > 1) and not self._texts[a.id].is_name]
         return max(candidates, key=burden, default=None)
 
     def _declare(self, node: Expr) -> None:
@@ -232,8 +232,7 @@ def _count_uses(order: Sequence[Expr], roots: Sequence[Expr]) -> dict[int, int]:
     for root in roots:
         uses[root.id] += 1
     for node in reversed(order):
-        alike = node.op is Op.VECTOR and all(a is node.args[0] for a in node.args)
-        for argument in node.args[:1] if alike else node.args:
+        for argument in operands(node):
             if argument.id in uses:
                 uses[argument.id] += uses[node.id] if node.op is Op.SWIZZLE else 1
     return uses

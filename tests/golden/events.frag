@@ -139,20 +139,15 @@ float cylinder(vec3 p, float radius, float height) {
 // A box around the origin; `size` is its edges' lengths.
 vec4 box_surface(vec3 p, vec3 size) {
     vec3 q = abs(p) - size / 2.0;
-    bool below = q.z < q.y;
-    float d = max(q.y, q.z);
-    bool below_2 = d < q.x;
-    float chosen = below_2 ? 0.0 : 1.0;
-    vec3 q_2 = vec3(below_2 ? 1.0 : 0.0, below ? chosen : 0.0, below ? 0.0 : chosen);
-    vec3 q_3 = q_2 * sign(sign(p) + 0.5);
-    return vec4(q_3.xyz, max(q.x, d));
+    float d = max(q.x, max(q.y, q.z));
+    vec3 q_2 = d <= q.z ? vec3(0.0, 0.0, 1.0) : d <= q.y ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    return vec4(q_2 * sign(sign(p) + 0.5), d);
 }
 
 // A ball around the origin.
 vec4 sphere_surface(vec3 p, float radius) {
     float len = length(p);
-    vec3 q = p * (1.0 / max(len, 1e-30));
-    return vec4(q.xyz, len - radius);
+    return vec4(p / max(len, 1e-30), len - radius);
 }
 
 // A cylinder around y, centred.

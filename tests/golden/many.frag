@@ -98,8 +98,7 @@ float sphere(vec3 p, float radius) {
 // A ball around the origin.
 vec4 sphere_surface(vec3 p, float radius) {
     float len = length(p);
-    vec3 q = p * (1.0 / max(len, 1e-30));
-    return vec4(q.xyz, len - radius);
+    return vec4(p / max(len, 1e-30), len - radius);
 }
 
 // place, size: 16 rows a cluster, the last one padded

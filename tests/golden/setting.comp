@@ -115,14 +115,13 @@ float sphere(vec3 p, float radius) {
 // Everything on the inner side of a plane: n.p <= offset for the unit normal n, which points out.
 vec4 plane_surface(vec3 p, vec3 normal, float offset) {
     vec3 q = normal / length(normal);
-    return vec4(q.xyz, dot(p, q) - offset);
+    return vec4(q, dot(p, q) - offset);
 }
 
 // A ball around the origin.
 vec4 sphere_surface(vec3 p, float radius) {
     float len = length(p);
-    vec3 q = p * (1.0 / max(len, 1e-30));
-    return vec4(q.xyz, len - radius);
+    return vec4(p / max(len, 1e-30), len - radius);
 }
 
 float map(vec3 p) {
