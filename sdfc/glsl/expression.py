@@ -16,6 +16,7 @@ from sdfc.field.function import Function
 from sdfc.field.graph import LEAVES, Expr, Op, topological
 from sdfc.field.order import evaluation_order
 from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose, operands
+from sdfc.glsl.gathered import gathered
 from sdfc.glsl.names import Names, identifier, literal, param_name, type_name
 
 __all__ = ["Printer", "literal", "print_function", "type_name"]
@@ -98,6 +99,7 @@ class _Block:
         order = evaluation_order(roots, self._below)
         self._uses = _count_uses(order, roots)
         self._spine = _spines(order, self._uses, self._texts)
+        self._gathered = gathered(order, self._uses, called)
         self._squares: dict[tuple[int, int], str] = {}
         for node in order:
             if node.id not in self._texts:
@@ -137,6 +139,10 @@ class _Block:
         self._texts[node.id] = text
         if node.id in self._spine:
             self._update(node)
+        elif node.id in self._gathered:
+            vector = self._gathered[node.id]
+            if vector is not None:
+                self._gather(vector)
         elif (self._uses[node.id] > 1 or node in self._called) and not self._is_trivial(node):
             self._declare(node)
 
@@ -169,6 +175,19 @@ class _Block:
 
     def _declare(self, node: Expr) -> None:
         self._texts[node.id] = Text(self._local(node, self._texts[node.id].text), is_name=True)
+
+    def _gather(self, vector: Expr) -> None:
+        """A local of the vector; its components are that one's. Where it gets too long, a local of each."""
+        text = self._composed(vector)
+        if len(text.text) > WIDTH or text.depth > DEPTH:
+            for component in vector.args:
+                self._declare(component)
+            return
+        self._texts[vector.id] = text
+        self._declare(vector)
+        name = self._texts[vector.id].text
+        for component, letter in zip(vector.args, "xyzw", strict=False):
+            self._texts[component.id] = Text(f"{name}.{letter}", is_name=True)
 
     def _local(self, node: Expr, text: str) -> str:
         name = self._scope.fresh(self._called.get(node) or local_name(node))

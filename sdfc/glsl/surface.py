@@ -93,13 +93,14 @@ class SurfaceWriter:
         self._looks_back = may_have_seams(root)
         body = Body(self._live)
         result = self._fold(root, body)
-        body.add(f"return {result};")
+        body.give(result)
+        lines = body.written()
         head = ["Surface surface(vec3 p, vec3 d, float fine) {"]
         if self._looks_back:
             head.append(f"    vec3 back = -{_BACK} * fine * d, before = p + back;")
-        if any("sunk" in line for line in body.lines):
+        if any("sunk" in line for line in lines):
             head.append(f"    float sunk = {_SUNK} * fine;  // what is marched, in an intersection")
-        function = "\n".join([*head, *body.lines, "}", ""])
+        function = "\n".join([*head, *lines, "}", ""])
         return SurfaceText(self._structure(), function, self._properties())
 
     # declarations
@@ -239,7 +240,7 @@ class SurfaceWriter:
         call = self._functions.of_part(part, role)
         field, sign = body.call(call, [q]), "" if inside else "-"
         if part.inverse is not None and not is_translation(part.inverse):
-            name = f"g_{part.name}{'' if role is Role.SURFACE else '_distance'}"
+            name = self._gradient_name(part, role)
             if name not in self._declared:  # a part may have several places in the tree
                 self._declared.add(name)
                 body.declare(Type.VEC4, name, field, part.span)
@@ -262,6 +263,10 @@ class SurfaceWriter:
             look = body.call(self._functions.of_part(part, Role.LOOK), [q])
             return self._made("painted", sign + field, rank, look)
         return self._made(self._names[id(part.material)], sign + field, rank)
+
+    def _gradient_name(self, part: Part, role: Role) -> str:
+        """Of the local that holds what the part's function gives."""
+        return f"g_{part.name}{'' if role is Role.SURFACE else '_distance'}"
 
     def _turned(self, part: Part, name: str, stretch: Expr) -> Expr:
         """The gradient in the scene's space: A^T g for the map p -> A p + b to the part's own space."""

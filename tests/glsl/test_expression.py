@@ -180,6 +180,23 @@ def test_components_of_one_vector_are_taken_of_a_local() -> None:
     assert body(turned[0] + turned[1]) == ["vec3 q = abs(p) * 2.0;", "return q.x + q.y;"]
 
 
+def test_numbers_that_are_one_vector_are_one_local() -> None:
+    graph = FieldGraph()
+    p = graph.input("p")
+    a, b = graph.length(p.swizzle("xz")) - 0.5, graph.abs(p[1]) - 1.0
+    norm = graph.length(graph.max(graph.vector(a, b), 0.0))
+    assert body(graph.min(graph.max(a, b), 0.0) + norm) == [
+        "vec2 q = vec2(length(p.xz) - 0.5, abs(p.y) - 1.0);",
+        "return min(max(q.x, q.y), 0.0) + length(max(q, 0.0));",
+    ]
+    wave = graph.call(Op.SIN, a)  # needs the other
+    assert body(graph.length(graph.vector(a, wave)) + a * wave) == [
+        "float d = length(p.xz) - 0.5;",
+        "float sine = sin(d);",
+        "return length(vec2(d, sine)) + d * sine;",
+    ]
+
+
 def test_a_long_chain_updates_one_variable() -> None:
     graph = FieldGraph()
     p = graph.input("p")

@@ -149,8 +149,7 @@ vec4 twist_1_surface(vec3 p) {
 
 float map(vec3 p) {
     float d1 = torus(p, 0.52223295, 0.17407766);
-    d1 = max(d1, -(0.87038827 * twist_1_field(p * 1.1489125)));  // test.sdf:1:41
-    return d1;
+    return max(d1, -(0.87038827 * twist_1_field(p * 1.1489125)));  // test.sdf:1:41
 }
 
 // the first hit of what is marched, before `limit`
@@ -186,8 +185,7 @@ Surface surface(vec3 p, vec3 d, float fine) {
     float sunk = 3.0 * fine;  // what is marched, in an intersection
     Surface s1 = unpainted_material(torus_surface(p, 0.52223295, 0.17407766), torus_surface(before, 0.52223295, 0.17407766).w + sunk);
     vec4 g_twist_1 = twist_1_surface(p * 1.1489125);  // test.sdf:1:41
-    s1 = farther(s1, unpainted_material(-vec4(g_twist_1.xyz * 1.1489125, g_twist_1.w) * 0.87038827, -0.87038827 * twist_1_surface(before * 1.1489125).w + sunk));
-    return s1;
+    return farther(s1, unpainted_material(-vec4(g_twist_1.xyz * 1.1489125, g_twist_1.w) * 0.87038827, -0.87038827 * twist_1_surface(before * 1.1489125).w + sunk));
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

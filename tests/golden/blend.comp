@@ -246,8 +246,7 @@ float trace(vec3 o, vec3 d, float start, float limit) {
 Surface surface(vec3 p, vec3 d, float fine) {
     Surface s1 = red_material(sphere_distance_surface(p, 0.47555065));
     Surface s2 = blue_material(box_distance_surface(p, vec3(1.1888766, 0.356663, 0.356663)));
-    Surface s3 = blended(s1, s2, smooth_union_weights(s1.field.w, s2.field.w, 0.23777533));  // test.sdf:3:9
-    return s3;
+    return blended(s1, s2, smooth_union_weights(s1.field.w, s2.field.w, 0.23777533));  // test.sdf:3:9
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

@@ -131,9 +131,8 @@ float sphere(vec3 p, float radius) {
 
 // A cylinder around y, centred.
 float cylinder(vec3 p, float radius, float height) {
-    float d = length(p.xz) - radius;
-    float d_2 = abs(p.y) - height / 2.0;
-    return min(max(d, d_2), 0.0) + length(max(vec2(d, d_2), 0.0));
+    vec2 q = vec2(length(p.xz) - radius, abs(p.y) - height / 2.0);
+    return min(max(q.x, q.y), 0.0) + length(max(q, 0.0));
 }
 
 // A box around the origin; `size` is its edges' lengths.
@@ -163,8 +162,7 @@ vec4 cylinder_surface(vec3 p, float radius, float height) {
 float map(vec3 p) {
     float d1 = box(p, vec3(1.1547005));  // test.sdf:1:10
     d1 = max(d1, sphere(p, 0.6928203));  // test.sdf:1:33
-    d1 = max(d1, -cylinder(p, 0.34641016, 2.309401));  // test.sdf:1:56
-    return d1;
+    return max(d1, -cylinder(p, 0.34641016, 2.309401));  // test.sdf:1:56
 }
 
 // each cut solid from one event to the next
@@ -203,8 +201,7 @@ float trace(vec3 o, vec3 d, float start, float limit) {
 Surface surface(vec3 p, vec3 d, float fine) {
     Surface s1 = unpainted_material(box_surface(p, vec3(1.1547005)));
     s1 = farther(s1, unpainted_material(sphere_surface(p, 0.6928203)));
-    s1 = farther(s1, unpainted_material(-cylinder_surface(p, 0.34641016, 2.309401)));
-    return s1;
+    return farther(s1, unpainted_material(-cylinder_surface(p, 0.34641016, 2.309401)));
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

@@ -67,5 +67,5 @@ def test_gradients_are_as_short_as_by_hand() -> None:
         "vec3 q_4 = ((d <= 0.0 ? q_2 : vec3(0.0)) + q_3 / max(len, 1e-30)) * sign(sign(p) + 0.5);",
         "return vec4(q_4, len + min(d, 0.0));",
     ]
-    assert len(_printed("cylinder")) == 10
+    assert len(_printed("cylinder")) == 9
     assert len(_printed("rounded_box")) == 7
