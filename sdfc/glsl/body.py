@@ -14,6 +14,7 @@ from sdfc.glsl.names import LOCALS, Names
 from sdfc.shape.matrix import Matrix
 
 _WORD = re.compile(r"\w+")
+_ARGUMENT = [(before, after) for before in ("(", ", ") for after in (",", ")")]  # what stands beside one
 _LONGEST = 112  # characters of a line that a point is written in: the scene's name before those of functions makes 120
 
 
@@ -105,10 +106,10 @@ class Body:
             if len(users[name]) != 2:
                 continue
             declared, used = users[name]
-            argument = re.fullmatch(rf"(.*[( ]){name}([,)].*)", lines[used])
-            if argument is not None and len(lines[used]) - len(name) + len(text) <= _LONGEST:
-                lines[used] = f"{argument[1]}{text}{argument[2]}"
-                gone.add(declared)
+            for before, after in _ARGUMENT:
+                if before + name + after in lines[used] and len(lines[used]) - len(name) + len(text) <= _LONGEST:
+                    lines[used] = lines[used].replace(before + name + after, before + text + after)
+                    gone.add(declared)
         return [line for number, line in enumerate(lines) if number not in gone]
 
     def call(self, call: Call, leading: Sequence[str]) -> str:

@@ -251,7 +251,7 @@ def _count_uses(order: Sequence[Expr], roots: Sequence[Expr]) -> dict[int, int]:
     for root in roots:
         uses[root.id] += 1
     for node in reversed(order):
-        for argument in operands(node):
+        for argument in operands(node) if node.op is Op.VECTOR else node.args:
             if argument.id in uses:
                 uses[argument.id] += uses[node.id] if node.op is Op.SWIZZLE else 1
     return uses
