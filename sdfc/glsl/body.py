@@ -13,6 +13,7 @@ from sdfc.glsl.live import Values
 from sdfc.glsl.names import LOCALS, Names
 from sdfc.shape.matrix import Matrix
 
+_COMPONENTS = re.compile(r"\w+\.[xyzw]+")
 _WORD = re.compile(r"\w+")
 _ARGUMENT = [(before, after) for before in ("(", ", ") for after in (",", ")")]  # what stands beside one
 _LONGEST = 112  # characters of a line that a point is written in: the scene's name before those of functions makes 120
@@ -66,6 +67,8 @@ class Body:
             return self.text(value)
         if value.id not in self._local:
             text = self.text(value)
+            if _COMPONENTS.fullmatch(text):
+                return text
             name = self._scope.fresh(wanted)
             self.add(f"{type_name(value.type)} {name} = {text};")
             self._local[value.id] = name

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -96,6 +97,23 @@ class Motions:
     def _constant(self, number: float) -> Expr:
         made = self._constants[number] = self._values.constant(number + 0.0)  # -0.0 is 0.0
         return made
+
+
+def backward_axes(motion: Fixed, dimension: int) -> list[int]:
+    """The axes of the space moved along which that space's first coordinate to count is counted backward."""
+    rows = [motion.inverse[3 * i : 3 * i + 3] for i in range(dimension)]
+    return [i for i, row in enumerate(rows) if next((entry for entry in row if entry != 0.0), 1.0) < 0.0]
+
+
+def turned_round(motion: Fixed, axes: Collection[int]) -> Fixed:
+    """The motion of what was first mirrored across these axes."""
+    if not axes:
+        return motion
+    signs = [-1.0 if i in axes else 1.0 for i in range(3)]
+    forward = [v * signs[i % 3] for i, v in enumerate(motion.forward[:9])]
+    inverse = [v * signs[i // 3] for i, v in enumerate(motion.inverse[:9])]
+    shift = [v * sign for v, sign in zip(motion.inverse[9:], signs, strict=True)]
+    return Fixed((*forward, *motion.forward[9:]), (*inverse, *shift))
 
 
 def _numbers(given: Matrix) -> Numbers | None:
