@@ -31,19 +31,19 @@ def even_axes(definition: Definition, arguments: Sequence[Argument], values: Fie
 def _parity(nodes: Sequence[Expr], point: Expr, axis: int) -> Parity:
     """Of the last node, a number."""
     found: dict[int, tuple[Parity, ...]] = {}
+    found[point.id] = tuple([-1 if i == axis else 1 for i in range(point.type.size)])
+    # what has no row stays as it is
     for node in nodes:
-        if node is point:
-            found[node.id] = tuple([-1 if i == axis else 1 for i in range(node.type.size)])
-        else:
-            found[node.id] = _of(node, [found[a.id] for a in node.args])
-    return found[nodes[-1].id][0]
+        if [a for a in node.args if a.id in found]:
+            parities = _of(node, [found.get(a.id) or (1,) * a.type.size for a in node.args])
+            if parities.count(1) < len(parities):
+                found[node.id] = parities
+    return found.get(nodes[-1].id, (1,))[0]
 
 
 def _of(node: Expr, below: Sequence[tuple[Parity, ...]]) -> tuple[Parity, ...]:
     """Of each component, by those of its arguments."""
     size = node.type.size
-    if all(parity == 1 for parities in below for parity in parities):
-        return (1,) * size
     match node.op:
         case Op.VECTOR:
             return tuple([parities[0] for parities in below])

@@ -100,9 +100,9 @@ class Motions:
 
 
 def backward_axes(motion: Fixed, dimension: int) -> list[int]:
-    """The axes of the space moved along which that space's first coordinate to count is counted backward."""
-    rows = [motion.inverse[3 * i : 3 * i + 3] for i in range(dimension)]
-    return [i for i, row in enumerate(rows) if next((entry for entry in row if entry != 0.0), 1.0) < 0.0]
+    """The axes of the space moved whose coordinate falls with the first of the scene's that it depends on."""
+    a = motion.inverse
+    return [i for i in range(dimension) if (a[3 * i] or a[3 * i + 1] or a[3 * i + 2]) < 0.0]
 
 
 def turned_round(motion: Fixed, axes: Collection[int]) -> Fixed:
