@@ -23,11 +23,19 @@ class Painter:
     With a worker, shaders are compiled ahead, while this thread does something else: `is_ready` says when.
     """
 
-    def __init__(self, backend: str, note: Callable[[str], None], worker: Worker | None, ring: Callable[[], None]):
+    def __init__(
+        self,
+        backend: str,
+        note: Callable[[str], None],
+        worker: Worker | None,
+        ring: Callable[[], None],
+        lost: Callable[[], None],
+    ) -> None:
         self._backend = backend
         self._note = note
         self._worker = worker
         self._ring = ring  # called, in another thread, when something has become ready
+        self._lost = lost  # called when the device failed, and all shaders on it are gone
         self._renderer: Renderer | None = None
         self._ready: set[str] = set()  # shaders that this process has, or finds in the driver's cache
         self._ahead: dict[str, Future[Outcome]] = {}
@@ -72,6 +80,7 @@ class Painter:
             colour = self.renderer.radiance(shot, 0, None)[..., :3]
         except DeviceError:
             self.close()
+            self._lost()
             raise
         self._ready.add(_shader(shot))
         return Image(colour.astype("float32"), {}, shot.compiled.materials, self.renderer.name)

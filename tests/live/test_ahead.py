@@ -14,7 +14,8 @@ import pytest
 from author import BALLS, SIZE
 from visitor import PATIENCE, Visitor, visitors
 
-from sdfc.diagnostics import SceneError
+from sdfc.api.renderer import GlRenderer
+from sdfc.diagnostics import DeviceError, SceneError
 from sdfc.live.pages import Pages
 from sdfc.live.saves import Bell
 from sdfc.live.session import Session
@@ -209,6 +210,14 @@ def test_what_waits_and_may_not_be_what_was_read_is_not_built_upon(
     assert desk.picture() == picture_of(OTHER)
 
 
+def test_after_what_may_not_be_what_was_read_the_worker_compiles_as_ever(desk: Desk) -> None:
+    desk.begins(BALLS)
+    before = desk.picture()
+    desk.session.distrust()
+    assert desk.begins(OTHER) is None and len(desk.worker.jobs) == 1
+    assert desk.picture() == before, "it stays until the shader is there"
+
+
 @dataclass
 class Served:
     """A desk with pages, and one who looks at them."""
@@ -292,6 +301,28 @@ def test_what_a_page_waits_for_is_not_given_up_for_numbers(serving: Callable[[bo
     desk.worker.finishes()
     assert desk.session.answer()
     viewer.picture(3)
+
+
+def test_a_device_that_fails_for_a_page_has_no_shader_any_more(
+    serving: Callable[[bool], Served], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> None:
+        raise DeviceError("gone")
+
+    served = serving(True)
+    desk, viewer = served.desk, served.viewer
+    camera = viewer.hears("scene")["camera"]
+    desk.worker.finishes()
+    assert desk.session.go_on() is not None
+    served.asks(1, camera)
+    with monkeypatch.context() as patched:
+        patched.setattr(GlRenderer, "radiance", fails)
+        assert desk.session.answer()
+    assert viewer.hears("refused")["text"] == "gone"
+    assert desk.begins(f"def unused = 1\n{BALLS}") is None, "it is compiled again"
+    desk.worker.finishes()
+    update = desk.session.go_on()
+    assert update is not None and update.speed is Speed.NEW_SHADER
 
 
 def test_the_real_worker_makes_the_same_picture(tmp_path: Path, picture_of: Callable[[str], bytes]) -> None:
