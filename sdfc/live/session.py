@@ -97,6 +97,11 @@ class Session:
             self._edits.distrust()
         return update
 
+    def greet(self) -> None:
+        """Tell pages that have come since what is shown."""
+        if self._pages is not None:
+            self._pages.greet()
+
     def answer(self) -> bool:
         """Draw for one page that asks for a picture, if there is one; whether there was."""
         return self._pages is not None and self._pages.answer(self._painter)

@@ -113,14 +113,14 @@ def _told(scene: Path, kind: Kind | None, session: Session, seen: Snapshot | Exc
 
 
 def _gone_on(session: Session) -> Iterator[Update | Failure]:
-    """The update for what was waiting for its shader, if that is there now."""
+    """The update for what was waiting for its shader, if that is there now; and those who have come are greeted."""
     try:
         update = session.go_on()
-    except Exception as error:  # as above
-        yield Failure(error)
-    else:
         if update is not None:
             yield update
+        session.greet()
+    except Exception as error:  # as above
+        yield Failure(error)
 
 
 def _is_read_alike(before: Snapshot, now: Snapshot | Exception) -> bool:

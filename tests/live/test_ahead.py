@@ -242,9 +242,12 @@ def serving(tmp_path: Path) -> Iterator[Callable[[bool], Served]]:
             stack.callback(pages.close)
             desk = Desk(tmp_path, pages, has_file)
             stack.callback(desk.session.close)
-            visitor = stack.enter_context(visitors(int(pages.address.rstrip("/").rsplit(":", 1)[1])))
+            port = int(pages.address.rstrip("/").rsplit(":", 1)[1])
+            visitor = stack.enter_context(visitors(port, desk.session.greet))
             assert (desk.begins(BALLS) is None) == has_file, "pages do not wait for the first picture"
-            return Served(desk, visitor(), asked)
+            viewer = visitor()
+            assert asked.acquire(timeout=PATIENCE), "to be told the scene"
+            return Served(desk, viewer, asked)
 
         yield made
 
