@@ -15,7 +15,7 @@ from sdfc.live.door import Door
 from sdfc.live.edits import Shown
 from sdfc.live.guest import Guest
 from sdfc.live.messages import Message, text_of
-from sdfc.live.painter import Painter
+from sdfc.live.painter import Painter, StoppedError
 from sdfc.live.wishes import Wish
 
 
@@ -135,12 +135,18 @@ class Pages:
         for guest in self._guests:
             guest.send(text)
 
-    def answer(self, painter: Painter) -> bool:
-        """Draw for one page that asks for it and whose shader is there; whether there was one. Pages take turns."""
+    def answer(self, painter: Painter, is_needed: Callable[[], bool]) -> bool:
+        """Draw for one page that asks for it and whose shader is there; whether there was one. Pages take turns.
+
+        `is_needed` is asked now and then whether there is something better to do: then the page is drawn for later.
+        """
         with self._lock:
             asking = [(guest, wish) for guest in self._guests if (wish := guest.wish) is not None]
         for guest, wish in asking:
-            frames = self._answered(wish, painter)
+            try:
+                frames = self._answered(guest, wish, painter, is_needed)
+            except StoppedError:
+                return True
             if frames:
                 guest.done(wish)
                 guest.send(*frames)
@@ -148,13 +154,17 @@ class Pages:
                 return True
         return False
 
-    def _answered(self, wish: Wish, painter: Painter) -> tuple[str | bytes, ...]:
-        """The frames of an answer; none while its shader is compiled."""
+    def _answered(
+        self, guest: Guest, wish: Wish, painter: Painter, is_needed: Callable[[], bool]
+    ) -> tuple[str | bytes, ...]:
+        """The frames of an answer; none while its shader is compiled. Raises StoppedError."""
         try:
             shot = _shot(self._shown, wish)
             if not painter.is_ready(shot):
                 return ()
-            picture = painter.draw(shot).encode("png")
+            picture = painter.draw(shot, lambda: is_needed() or guest.wish is None).encode("png")
+        except StoppedError:
+            raise
         except Exception as error:  # its fault, the device's, or a bug in sdfc: the watch goes on
             return (text_of({"type": "refused", "request": wish.request, "text": str(error)}),)
         return text_of({"type": "picture", "request": wish.request}), picture

@@ -102,9 +102,12 @@ class Session:
         if self._pages is not None:
             self._pages.greet()
 
-    def answer(self) -> bool:
-        """Draw for one page that asks for a picture, if there is one; whether there was."""
-        return self._pages is not None and self._pages.answer(self._painter)
+    def answer(self, is_needed: Callable[[], bool] = lambda: False) -> bool:
+        """Draw for one page that asks for a picture, if there is one; whether there was.
+
+        `is_needed` is asked now and then: where there is a save to be shown, the page is drawn for after it.
+        """
+        return self._pages is not None and self._pages.answer(self._painter, is_needed)
 
     def _next(self, snapshot: Snapshot) -> tuple[Shown, Stopwatch]:
         """What is to be shown now. What waits is given up, or goes on to wait with other numbers."""

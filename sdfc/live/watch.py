@@ -38,11 +38,15 @@ def watch(scene: Path, kind: Kind | None, session: Session) -> Iterator[Update |
         stamp = _stamp(paths)
         is_owed = yield from _answered(_told(scene, kind, session, seen))
         is_busy = False
+
+        def is_saved() -> bool:
+            return _stamp(paths) != stamp
+
         while True:
             happened = saves.wait(0.0 if is_busy else _LOOK)
-            if not happened and _stamp(paths) == stamp:
+            if not happened and not is_saved():
                 is_owed = (yield from _answered(_gone_on(session))) or is_owed
-                is_busy = session.answer()  # one picture at a time: a save comes first
+                is_busy = session.answer(is_saved)  # one picture at a time: a save comes first
                 continue
             before, stamp = stamp, _stamp(paths)  # before the look: what is saved during it is seen by the next one
             now = _settled(scene, kind, _looked(scene, kind))

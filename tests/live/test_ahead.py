@@ -21,6 +21,7 @@ from sdfc.live.saves import Bell
 from sdfc.live.session import Session
 from sdfc.live.snapshot import take
 from sdfc.live.update import Speed, Update
+from sdfc.live.watch import watch
 from sdfc.live.worker import Job, Outcome, Worker
 
 pytestmark = [pytest.mark.gpu, pytest.mark.usefixtures("opengl")]
@@ -304,6 +305,40 @@ def test_what_a_page_waits_for_is_not_given_up_for_numbers(serving: Callable[[bo
     desk.worker.finishes()
     assert desk.session.answer()
     viewer.picture(3)
+
+
+def test_a_save_is_seen_while_a_page_is_drawn_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And it is shown at once: the page's picture is begun again after it."""
+    desk = Desk(tmp_path, None, has_file=False)
+    desk.scene.write_text(BALLS)
+    looks: list[bool] = []
+
+    def answer(is_needed: Callable[[], bool]) -> bool:
+        looks.append(is_needed())
+        desk.scene.write_text(OTHER)
+        looks.append(is_needed())
+        return True
+
+    monkeypatch.setattr(desk.session, "answer", answer)
+    updates = watch(desk.scene, None, desk.session)
+    for _ in range(2):
+        update = next(updates)
+        assert isinstance(update, Update) and update.speed is Speed.NEW_SHADER
+    assert looks == [False, True]
+    updates.close()  # type: ignore[attr-defined]
+
+
+def test_a_compile_that_was_left_does_not_hold_up_what_waits_behind_it(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    desk.begins(BALLS)
+    desk.begins(OTHER)
+    desk.worker.jobs[0][1].set_running_or_notify_cancel()
+    desk.begins(THIRD)
+    assert desk.session.go_on() is None and desk.worker.stops == 0, "it may be done soon"
+    monkeypatch.setattr("sdfc.live.painter._LONG", 0.0)
+    assert desk.session.go_on() is None and desk.worker.stops == 1
+    assert desk.session.go_on() is None and desk.worker.stops == 1, "once"
 
 
 def test_a_device_that_fails_for_a_page_has_no_shader_any_more(

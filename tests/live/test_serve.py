@@ -327,6 +327,43 @@ def test_the_newest_wish_of_each_page_is_drawn_once(opengl: None, host: Host, vi
 
 
 @pytest.mark.gpu
+def test_what_a_page_asked_for_waits_for_what_is_needed_first(
+    opengl: None, host: Host, visitor: Callable[[], Visitor]
+) -> None:
+    host.save(BALLS)
+    page = visitor()
+    camera = page.hears("scene")["camera"]
+    page.asks(1, camera=camera, size=[640, 360])
+    assert host.asked.acquire(timeout=PATIENCE) and host.asked.acquire(timeout=PATIENCE)
+    looks = iter([False, True])
+    assert host.session.answer(lambda: next(looks)), "there is something to go on with"
+    assert host.session.answer()
+    page.picture(1)
+
+
+@pytest.mark.gpu
+def test_for_a_page_that_leaves_nothing_is_drawn_any_more(
+    opengl: None, host: Host, visitor: Callable[[], Visitor]
+) -> None:
+    host.save(BALLS)
+    alone = threading.active_count()
+    page = visitor()
+    page.asks(1, camera=page.hears("scene")["camera"], size=[1920, 1920])
+    assert host.asked.acquire(timeout=PATIENCE) and host.asked.acquire(timeout=PATIENCE)
+    looks: list[int] = []
+
+    def look() -> bool:
+        looks.append(len(looks))
+        page.connection.close()
+        while threading.active_count() > alone:
+            time.sleep(0.01)
+        return False
+
+    assert host.session.answer(look) and not host.session.answer()
+    assert len(looks) == 1
+
+
+@pytest.mark.gpu
 @pytest.mark.parametrize(
     ("wish", "words"),
     [
