@@ -32,15 +32,15 @@ class Saves:
     """Waits in a thread of its own, so that signals (Ctrl-C) reach the main one as they always do."""
 
     def __init__(self, bell: Bell) -> None:
-        self._folders: frozenset[Path] = frozenset()
+        self._folders: dict[Path, tuple[int, int]] = {}
         self._bell = bell
         self._happened = threading.Event()
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
 
     def look_at(self, folders: Collection[Path]) -> None:
-        """Watch these folders, without those in them."""
-        wanted = frozenset(folder for folder in folders if folder.is_dir())
+        """Watch these folders, without those in them. One that took another's place is another folder."""
+        wanted = {folder: _identity(folder) for folder in folders if folder.is_dir()}
         if wanted == self._folders and self._thread is not None and self._thread.is_alive():
             return
         self.close()
@@ -90,3 +90,11 @@ class Saves:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self.close()
+
+
+def _identity(folder: Path) -> tuple[int, int]:
+    try:
+        found = folder.stat()
+    except OSError:  # it has just gone
+        return 0, 0
+    return found.st_dev, found.st_ino

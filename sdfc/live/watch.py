@@ -32,10 +32,10 @@ Stamp = tuple[tuple[int, int, int] | None, ...]
 
 def watch(scene: Path, kind: Kind | None, session: Session) -> Iterator[Update | Failure]:
     """An update for every save, the first picture first, for ever. Raises RequestError where there is no scene."""
-    seen: Snapshot | Exception = first_look(scene, kind)
     with Saves(session.bell) as saves:
-        paths = _watched(saves, scene, seen, ())
+        paths = _watched(saves, scene, first_look(scene, kind), ())
         stamp = _stamp(paths)
+        seen = _looked(scene, kind)  # after the stamp: what is saved from now on is seen by the next look
         is_owed = yield from _answered(_told(scene, kind, session, seen))
         is_busy = False
 

@@ -8,7 +8,7 @@ from concurrent.futures import Future
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import pytest
 from author import BALLS, SIZE
@@ -21,7 +21,7 @@ from sdfc.live.saves import Bell
 from sdfc.live.session import Session
 from sdfc.live.snapshot import take
 from sdfc.live.update import Speed, Update
-from sdfc.live.watch import watch
+from sdfc.live.watch import _watched, watch
 from sdfc.live.worker import Job, Outcome, Worker
 
 pytestmark = [pytest.mark.gpu, pytest.mark.usefixtures("opengl")]
@@ -326,6 +326,22 @@ def test_a_save_is_seen_while_a_page_is_drawn_for(tmp_path: Path, monkeypatch: p
         assert isinstance(update, Update) and update.speed is Speed.NEW_SHADER
     assert looks == [False, True]
     updates.close()  # type: ignore[attr-defined]
+
+
+def test_a_save_during_the_first_look_is_seen(
+    desk: Desk, picture_of: Callable[[str], bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def watched(*given: Any) -> tuple[Path, ...]:
+        paths = _watched(*given)
+        desk.scene.write_text(OTHER)
+        return paths
+
+    desk.scene.write_text(BALLS)
+    monkeypatch.setattr("sdfc.live.watch._watched", watched)
+    updates = watch(desk.scene, None, desk.session)
+    next(updates)
+    updates.close()  # type: ignore[attr-defined]
+    assert desk.picture() == picture_of(OTHER)
 
 
 def test_a_compile_that_was_left_does_not_hold_up_what_waits_behind_it(
