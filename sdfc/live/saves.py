@@ -32,7 +32,7 @@ class Saves:
     """Waits in a thread of its own, so that signals (Ctrl-C) reach the main one as they always do."""
 
     def __init__(self, bell: Bell) -> None:
-        self._folders: dict[Path, tuple[int, int]] = {}
+        self._folders: frozenset[Path] = frozenset()
         self._bell = bell
         self._happened = threading.Event()
         self._stop = threading.Event()
@@ -40,8 +40,8 @@ class Saves:
 
     def look_at(self, folders: Collection[Path]) -> None:
         """Watch these folders, without those in them. One that took another's place is another folder."""
-        wanted = {folder: _identity(folder) for folder in folders if folder.is_dir()}
-        if wanted == self._folders and self._thread is not None and self._thread.is_alive():
+        wanted = frozenset(folder for folder in folders if folder.is_dir())
+        if wanted == self._folders and self._thread is not None and not self._stop.is_set():
             return
         self.close()
         self._folders, self._stop = wanted, threading.Event()
@@ -57,7 +57,7 @@ class Saves:
         return True
 
     def _run(self, folders: Collection[Path], stop: threading.Event) -> None:
-        from watchfiles import watch
+        from watchfiles import Change, watch
 
         changes = watch(
             *folders,
@@ -70,11 +70,15 @@ class Saves:
             ignore_permission_denied=True,
         )
         try:
-            for _ in changes:
+            for happened in changes:
+                if any(kind is Change.deleted and Path(path) in folders for kind, path in happened):
+                    stop.set()  # what comes in its place is another folder
                 self._happened.set()
                 self._bell.ring()
         except OSError:  # a folder is gone, or the system watches no more: whoever waits looks now and then anyway
-            return
+            pass
+        finally:
+            stop.set()
 
     def close(self) -> None:
         """Stop watching."""
@@ -90,11 +94,3 @@ class Saves:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self.close()
-
-
-def _identity(folder: Path) -> tuple[int, int]:
-    try:
-        found = folder.stat()
-    except OSError:  # it has just gone
-        return 0, 0
-    return found.st_dev, found.st_ino

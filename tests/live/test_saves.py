@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
 import time
 from pathlib import Path
+
+import pytest
 
 from sdfc.live.saves import Bell, Saves
 
@@ -18,13 +21,17 @@ def notices(saves: Saves, file: Path) -> None:
         file.write_text(str(time.monotonic()))
 
 
-def test_a_folder_that_took_anothers_place_is_watched(tmp_path: Path) -> None:
+@pytest.mark.parametrize("is_kept", [True, False])
+def test_a_folder_that_took_anothers_place_is_watched(tmp_path: Path, is_kept: bool) -> None:
     folder, file = tmp_path / "work", tmp_path / "work" / "s.sdf"
     folder.mkdir()
     with Saves(Bell()) as saves:
         saves.look_at([folder])
         notices(saves, file)
-        folder.rename(tmp_path / "old")
+        if is_kept:
+            folder.rename(tmp_path / "old")
+        else:
+            shutil.rmtree(folder)
         folder.mkdir()
         while saves.wait(0.5):
             pass
