@@ -43,9 +43,13 @@ Talk = Callable[[ServerConnection], None]
 
 
 class Door:
-    """Open from the start. `talk` has a page's WebSocket until it returns, in a thread of that page's own."""
+    """Open from the start. `talk` has a page's WebSocket until it returns, in a thread of that page's own.
 
-    def __init__(self, port: int, talk: Talk) -> None:
+    `expects` is called, in any thread, when a browser asks for the page: its WebSocket comes soon.
+    """
+
+    def __init__(self, port: int, talk: Talk, expects: Callable[[], None]) -> None:
+        self._expects = expects
         self._sockets: dict[socket.socket, bool] = {}  # in the order in which they came; whether it is a page's
         self._lock = threading.Lock()
         self._is_closed = False
@@ -126,6 +130,8 @@ class Door:
         name = _FILES.get(request.path.partition("?")[0])  # what a link may have added is nobody's
         if name is None:
             return _plain(HTTPStatus.NOT_FOUND)
+        if name == "index.html":
+            self._expects()
         return _response(HTTPStatus.OK, page.FILES[name], page.content(name))
 
     def close(self) -> None:

@@ -22,25 +22,30 @@ from sdfc.live.wishes import Wish
 class Pages:
     """Any number of them. One that comes late is told what the others see.
 
-    What a page needs to begin is dear to make, and nobody makes it where there is no page; and it is made in the thread
-    of the watch alone (`greet`), since it adds to the scene's own graphs.
+    What a page needs to begin is dear to make, and nobody makes it where no page is or comes; and it is made in the
+    thread of the watch alone (`greet`), since it adds to the scene's own graphs.
     """
 
     def __init__(self, port: int, wanted: Callable[[], None]) -> None:
-        self._wanted = wanted  # called, in any thread, when a page waits to be told the scene, or asks for a picture
+        self._wanted = wanted  # called, in any thread, when a page is to be told the scene, or asks for a picture
         self._lock = threading.Lock()
         self._guests: list[Guest] = []  # those who are told
         self._coming: list[Guest] = []  # those who wait for `greet`
+        self._is_expecting = False  # a browser is loading the page
         self._shown: Shown | None = None
         self._number = 0  # of the scene that is shown
         self._scene: dict[str, Any] = {}  # its message, with what was told since; empty until a page needs it
         self._errors: Message | None = None
-        self._door = Door(port, self._welcome)
+        self._door = Door(port, self._welcome, self._expect)
 
     @property
     def address(self) -> str:
         """What to open in a browser."""
         return self._door.address
+
+    def _expect(self) -> None:
+        self._is_expecting = True
+        self._wanted()
 
     def _welcome(self, connection: ServerConnection) -> None:
         guest = Guest(connection)
@@ -68,7 +73,7 @@ class Pages:
     def greet(self) -> None:
         """Tell the scene to those who have come since. Where it cannot be told, they wait for the next."""
         with self._lock:
-            is_wanted = bool(self._coming)
+            is_wanted, self._is_expecting = bool(self._coming) or self._is_expecting, False
         if not is_wanted:
             return
         try:

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 from author import Author
+from host import Host
+from visitor import Visitor, visitors
 
 
 @pytest.fixture
@@ -28,3 +30,27 @@ def authors(opengl: None, tmp_path: Path) -> Iterator[Callable[[], Author]]:
 @pytest.fixture
 def author(authors: Callable[[], Author]) -> Author:
     return authors()
+
+
+@pytest.fixture
+def hosts(tmp_path: Path) -> Iterator[Callable[[Path | None], Host]]:
+    made: list[Host] = []
+
+    def host(picture: Path | None) -> Host:
+        made.append(Host(tmp_path, picture))
+        return made[-1]
+
+    yield host
+    for host_ in made:
+        host_.close()
+
+
+@pytest.fixture
+def host(hosts: Callable[[Path | None], Host]) -> Host:
+    return hosts(None)
+
+
+@pytest.fixture
+def visitor(host: Host) -> Iterator[Callable[[], Visitor]]:
+    with visitors(host.port, host.session.greet) as made:
+        yield made

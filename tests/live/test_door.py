@@ -256,8 +256,13 @@ def test_those_who_say_nothing_make_room_the_first_of_them_first(
             stranger.close()
 
 
-def test_pages_make_no_room(port: int, visitor: Callable[[], Visitor], pages: Pages) -> None:
+def test_pages_make_no_room(
+    port: int, visitor: Callable[[], Visitor], pages: Pages, wishes: threading.Semaphore
+) -> None:
     seen = [visitor() for _ in range(MOST_GUESTS)]
+    for one in seen:
+        one.connection.send(json.dumps(DRAW))
+        assert wishes.acquire(timeout=PATIENCE), "it is in"
     assert reply(port, head(port, "/"))[0] == 0
     pages.tell("all here")
     for one in seen:
