@@ -48,6 +48,7 @@ def watch(scene: Path, kind: Kind | None, session: Session) -> Iterator[Update |
                 is_owed = (yield from _answered(_gone_on(session))) or is_owed
                 is_busy = session.answer(is_saved)  # one picture at a time: a save comes first
                 continue
+            is_busy = True  # the bell may have been rung for more than the save
             before, stamp = stamp, _stamp(paths)  # before the look: what is saved during it is seen by the next one
             now = _settled(scene, kind, _looked(scene, kind))
             paths = _watched(saves, scene, now, paths)

@@ -7,8 +7,11 @@ from pathlib import Path
 
 import pytest
 from author import Author
+from desk import Desk
 from host import Host
 from visitor import Visitor, visitors
+
+from sdfc.live.snapshot import take
 
 
 @pytest.fixture
@@ -54,3 +57,27 @@ def host(hosts: Callable[[Path | None], Host]) -> Host:
 def visitor(host: Host) -> Iterator[Callable[[], Visitor]]:
     with visitors(host.port, host.session.greet) as made:
         yield made
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Iterator[Desk]:
+    made = Desk(tmp_path)
+    yield made
+    made.session.close()
+
+
+@pytest.fixture
+def picture_of(tmp_path: Path) -> Iterator[Callable[[str], bytes]]:
+    """What a session without a worker draws."""
+    folder = tmp_path / "fresh"
+    folder.mkdir()
+    desk = Desk(folder)
+
+    def drawn(text: str) -> bytes:
+        desk.scene.write_text(text)
+        desk.session.distrust()
+        desk.session.update(take(desk.scene))
+        return desk.picture()
+
+    yield drawn
+    desk.session.close()

@@ -4,94 +4,26 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
 
 import pytest
-from author import BALLS, SIZE
+from author import BALLS, OTHER, SIZE
+from desk import Desk
 from visitor import PATIENCE, Visitor, visitors
 
 from sdfc.api.renderer import GlRenderer
 from sdfc.diagnostics import DeviceError, SceneError
 from sdfc.live.pages import Pages
-from sdfc.live.saves import Bell
 from sdfc.live.session import Session
 from sdfc.live.snapshot import take
-from sdfc.live.update import Speed, Update
-from sdfc.live.watch import _watched, watch
-from sdfc.live.worker import Job, Outcome, Worker
+from sdfc.live.update import Speed
+from sdfc.live.worker import Outcome, Worker
 
 pytestmark = [pytest.mark.gpu, pytest.mark.usefixtures("opengl")]
 
-OTHER = BALLS.replace("many = 3", "many = 2")
 THIRD = BALLS.replace("many = 3", "many = 4")
-
-
-class SlowWorker:
-    """Takes jobs, and is done with them when a test says so."""
-
-    def __init__(self) -> None:
-        self.helps = True
-        self.jobs: list[tuple[Job, Future[Outcome]]] = []
-        self.stops = 0
-
-    def compile(self, job: Job) -> Future[Outcome]:
-        future: Future[Outcome] = Future()
-        self.jobs.append((job, future))
-        return future
-
-    def stop(self) -> None:
-        self.stops += 1
-
-    def finishes(self, outcome: Outcome = Outcome.KEPT) -> None:
-        """All that it was not told to leave."""
-        for _, future in self.jobs:
-            if not future.done():
-                future.set_result(outcome)
-
-
-class Desk:
-    """A session with a worker, for one who looks at the file."""
-
-    def __init__(self, folder: Path, pages: Pages | None = None, has_file: bool = True) -> None:
-        self.scene, self.file = folder / "s.sdf", folder / "o.npy"
-        self.worker, self.bell = SlowWorker(), Bell()
-        output = self.file if has_file else None
-        self.session = Session(output, SIZE, "auto", "gl", print, pages, cast("Worker", self.worker), self.bell)
-
-    def begins(self, text: str) -> Update | None:
-        self.scene.write_text(text)
-        return self.session.begin(take(self.scene))
-
-    def picture(self) -> bytes:
-        return self.file.read_bytes()
-
-
-@pytest.fixture
-def desk(tmp_path: Path) -> Iterator[Desk]:
-    made = Desk(tmp_path)
-    yield made
-    made.session.close()
-
-
-@pytest.fixture
-def picture_of(tmp_path: Path) -> Iterator[Callable[[str], bytes]]:
-    """What a session without a worker draws."""
-    folder = tmp_path / "fresh"
-    folder.mkdir()
-    desk = Desk(folder)
-
-    def drawn(text: str) -> bytes:
-        desk.scene.write_text(text)
-        desk.session.distrust()
-        desk.session.update(take(desk.scene))
-        return desk.picture()
-
-    yield drawn
-    desk.session.close()
 
 
 def test_the_picture_stays_until_the_shader_is_there(desk: Desk, picture_of: Callable[[str], bytes]) -> None:
@@ -305,43 +237,6 @@ def test_what_a_page_waits_for_is_not_given_up_for_numbers(serving: Callable[[bo
     desk.worker.finishes()
     assert desk.session.answer()
     viewer.picture(3)
-
-
-def test_a_save_is_seen_while_a_page_is_drawn_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """And it is shown at once: the page's picture is begun again after it."""
-    desk = Desk(tmp_path, None, has_file=False)
-    desk.scene.write_text(BALLS)
-    looks: list[bool] = []
-
-    def answer(is_needed: Callable[[], bool]) -> bool:
-        looks.append(is_needed())
-        desk.scene.write_text(OTHER)
-        looks.append(is_needed())
-        return True
-
-    monkeypatch.setattr(desk.session, "answer", answer)
-    updates = watch(desk.scene, None, desk.session)
-    for _ in range(2):
-        update = next(updates)
-        assert isinstance(update, Update) and update.speed is Speed.NEW_SHADER
-    assert looks == [False, True]
-    updates.close()  # type: ignore[attr-defined]
-
-
-def test_a_save_during_the_first_look_is_seen(
-    desk: Desk, picture_of: Callable[[str], bytes], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def watched(*given: Any) -> tuple[Path, ...]:
-        paths = _watched(*given)
-        desk.scene.write_text(OTHER)
-        return paths
-
-    desk.scene.write_text(BALLS)
-    monkeypatch.setattr("sdfc.live.watch._watched", watched)
-    updates = watch(desk.scene, None, desk.session)
-    next(updates)
-    updates.close()  # type: ignore[attr-defined]
-    assert desk.picture() == picture_of(OTHER)
 
 
 def test_a_compile_that_was_left_does_not_hold_up_what_waits_behind_it(
