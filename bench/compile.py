@@ -3,9 +3,9 @@
     python bench/compile.py [SCENE] [--rounds 15]
 
 The scene is bench/fifty.sdf, which has fifty leaves, unless another is named. All is done anew each time, but for
-what one process remembers of all scenes (the grammar, the standard library, its GLSL); `edited` also remembers the searches that
-the last edit's proofs needed, as `sdfc watch` does. Medians of time, and of time on the CPU, which is steadier on a
-machine that others use. `command` is all of `sdfc emit-glsl`, with Python's start and the imports.
+what one process remembers of all scenes (the grammar, the standard library, its GLSL); `edited` also remembers the
+searches that the last edit's proofs needed, as `sdfc watch` does. Medians of time, and of time on the CPU, which is
+steadier on a machine that others use. `command` is all of `sdfc emit-glsl`, with Python's start and the imports.
 """
 
 from __future__ import annotations

@@ -15,6 +15,7 @@ from sdfc.cli.values import parse_size
 
 if TYPE_CHECKING:
     from sdfc.live.pages import Pages
+    from sdfc.live.session import Session
     from sdfc.live.update import Update
     from sdfc.live.watch import Failure
 
@@ -68,24 +69,33 @@ def command(
     says what it needed and how long that took. What is wrong with the scene is told, and the last picture stays.
     """
     from sdfc.api.source import kind_named
-    from sdfc.live.saves import Bell
-    from sdfc.live.session import Session
     from sdfc.live.watch import first_look, watch
-    from sdfc.live.worker import Worker
 
     kind = kind_named(scene_format)
     _check(output, port, size, tracer)
     first_look(scene, kind)
-    bell = Bell()
     with ExitStack() as stack:
-        pages = _opened(port, bell.ring)
-        if pages is not None:
-            stack.callback(pages.close)
-        worker = stack.enter_context(Worker(_note)) if backend != "cpu" else None
-        session = Session(output, size, tracer, backend, _note, pages, worker, bell)
-        stack.callback(session.close)
+        session, pages = _begun(stack, port, output, size, tracer, backend)
         for told in watch(scene, kind, session):
             _tell(told, scene, pages)
+
+
+def _begun(
+    stack: ExitStack, port: int | None, output: Path | None, size: tuple[int, int], tracer: str, backend: str
+) -> tuple[Session, Pages | None]:
+    """What shows the scene, and the server for its pages; they end with the stack."""
+    from sdfc.live.saves import Bell
+    from sdfc.live.session import Session
+    from sdfc.live.worker import Worker
+
+    bell = Bell()
+    pages = _opened(port, bell.ring)
+    if pages is not None:
+        stack.callback(pages.close)
+    worker = stack.enter_context(Worker(_note)) if backend != "cpu" else None
+    session = Session(output, size, tracer, backend, _note, pages, worker, bell)
+    stack.callback(session.close)
+    return session, pages
 
 
 def _check(output: Path | None, port: int | None, size: tuple[int, int], tracer: str) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TypeAlias
 
+from sdfc.field.component_extremes import Components, component_extremes
 from sdfc.field.graph import COMPARISON, LEAVES, LOGIC, Expr, FieldGraph, Op, Type, topological
 
 # Norms and roots are divided by no less than this: representable in float32, far below any length that matters.
@@ -47,13 +48,22 @@ def gradient(root: Expr, point: Expr) -> Expr:
     for node in order:
         if any(a.id in depending for a in node.args):
             depending.add(node.id)
+    extremes = component_extremes(order)
+    if any(found.vector.op is Op.VECTOR for found in extremes.values()):
+        # a vector made of the operands hands on what it gets from an extremum of them too: it is visited after that
+        order = list(topological([root], lambda n: (extremes[n.id].vector,) if n.id in extremes else n.args))
     adjoints = _Adjoints(graph, depending)
     adjoints.add(root, graph.constant(1.0))
     for node in reversed(order):
         if node is point or node.id not in depending or node.op in LEAVES:
             continue
         adjoint = adjoints.total(node)
-        if adjoint is not None:
+        if adjoint is None:
+            continue
+        if node.id in extremes:
+            found = extremes[node.id]
+            adjoints.add(found.vector, _chosen(adjoint, _unit(node, found)))
+        else:
             _pull_back(graph, node, adjoint, adjoints)
     return adjoints.total(point) or _zeros(graph, point.type)
 
@@ -97,6 +107,10 @@ class _Adjoints:
 
 def _is_zero(e: Expr) -> bool:
     return e.is_constant and not any(e.numbers)
+
+
+def _is_one(e: Expr) -> bool:
+    return e.is_constant and e.numbers == (1.0,)
 
 
 def _nonzero(e: Expr) -> Expr | None:
@@ -179,6 +193,8 @@ def _pull_back(graph: FieldGraph, node: Expr, adjoint: Expr, adjoints: _Adjoints
                 continue
             if argument.type.size < node.type.size == partial.type.size:
                 adjoints.add(argument, graph.dot(adjoint, partial))
+            elif partial.op is Op.DIV and _is_one(partial.args[0]):
+                adjoints.add(argument, adjoint / partial.args[1])
             else:
                 adjoints.add(argument, adjoint * partial)
     else:
@@ -203,14 +219,30 @@ def _reverse_swizzle(graph: FieldGraph, node: Expr, adjoint: Expr, adjoints: _Ad
 def _reverse_dot(graph: FieldGraph, node: Expr, adjoint: Expr, adjoints: _Adjoints) -> None:
     a, b = node.args
     if a is b:
-        adjoints.add(a, a * (2.0 * adjoint))
+        _to_components(a, a * (2.0 * adjoint), adjoints)
     else:
         adjoints.add(a, b * adjoint)
         adjoints.add(b, a * adjoint)
 
 
 def _reverse_length(graph: FieldGraph, node: Expr, adjoint: Expr, adjoints: _Adjoints) -> None:
-    adjoints.add(node.args[0], node.args[0] * (adjoint / graph.max(node, TINY)))
+    v, size = node.args[0], graph.max(node, TINY)
+    _to_components(v, v / size if _is_one(adjoint) else v * (adjoint / size), adjoints)
+
+
+def _to_components(v: Expr, adjoint: Expr, adjoints: _Adjoints) -> None:
+    """Adds an adjoint that is a multiple of v itself: to q where v, or a component of it, is max(q, 0) or min(q, 0),
+    which is 0 wherever it is not q."""
+    if v.op is Op.VECTOR and any(_cut_at_zero(a) is not a for a in v.args):
+        for index, component in enumerate(v.args):
+            adjoints.add(_cut_at_zero(component), adjoint[index])
+    else:
+        adjoints.add(_cut_at_zero(v), adjoint)
+
+
+def _cut_at_zero(v: Expr) -> Expr:
+    """q if v is max(q, 0) or min(q, 0), else v."""
+    return v.args[0] if v.op in (Op.MIN, Op.MAX) and _is_zero(v.args[1]) and v.args[0].type is v.type else v
 
 
 def _reverse_extremum(graph: FieldGraph, node: Expr, adjoint: Expr, adjoints: _Adjoints) -> None:
@@ -233,6 +265,27 @@ def _reverse_select(graph: FieldGraph, node: Expr, adjoint: Expr, adjoints: _Adj
 
 
 # ---- kinks
+
+
+def _unit(node: Expr, extremum: Components) -> Expr:
+    """The unit vector along the component that a scalar min or max takes; at a tie the last of them."""
+    graph, operands = node.graph, extremum.operands
+    size = extremum.vector.type.size
+    units = [graph.constant(*[float(i == index) for i in range(size)]) for index in extremum.indices]
+    if len(operands) == 2:
+        return graph.select(_first_is_active(node), *units)
+    chosen = units[0]
+    for operand, unit in zip(operands[1:], units[1:], strict=True):
+        chosen = graph.select(operand <= node if node.op is Op.MIN else node <= operand, unit, chosen)
+    return chosen
+
+
+def _chosen(factor: Expr, vector: Expr) -> Expr:
+    """The product; where the factor is a choice with 0, a choice with a vector of zeros."""
+    if factor.op is Op.SELECT and any(_is_zero(a) for a in factor.args[1:]):
+        condition, then, otherwise = factor.args
+        return vector.graph.select(condition, vector * then, vector * otherwise)
+    return vector * factor
 
 
 def _first_is_active(node: Expr) -> Expr:

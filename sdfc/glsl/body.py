@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from sdfc.diagnostics import Span
@@ -11,6 +12,11 @@ from sdfc.glsl.functions import Call
 from sdfc.glsl.live import Values
 from sdfc.glsl.names import LOCALS, Names
 from sdfc.shape.matrix import Matrix
+
+_COMPONENTS = re.compile(r"\w+\.[xyzw]+")
+_WORD = re.compile(r"\w+")
+_ARGUMENT = [(before, after) for before in ("(", ", ") for after in (",", ")")]  # what stands beside one
+_LONGEST = 112  # characters of a line that a point is written in: the scene's name before those of functions makes 120
 
 
 def place(span: Span) -> str:
@@ -28,6 +34,7 @@ class Body:
         self._shares = live.shares
         self._indent = indent
         self._local: dict[Expr, str] = {}
+        self._points: dict[str, str] = {}  # the texts of points that have a name
         self._once: set[str] = set()
         self._scope = Names(LOCALS)
         self._printer = Printer(self._name, self._scope)
@@ -63,9 +70,12 @@ class Body:
             return self.text(value)
         if value not in self._local:
             text = self.text(value)
+            if _COMPONENTS.fullmatch(text):
+                return text
             name = self._scope.fresh(wanted)
             self.add(f"{type_name(value.type)} {name} = {text};")
             self._local[value] = name
+            self._points[name] = text
         return self._local[value]
 
     def add(self, line: str, span: Span | None = None) -> None:
@@ -81,6 +91,32 @@ class Body:
     def declare(self, type_: Type, name: str, text: str, span: Span | None = None) -> None:
         self._scope.reserve(name)
         self.add(f"{type_name(type_)} {name} = {text};", span)
+
+    def give(self, result: str) -> None:
+        """Ends the function with its result. What the last statement makes is returned at once."""
+        made = re.fullmatch(r"(\s*)(?:\w+ )?(\w+) = (.*)", self.lines[-1]) if self.lines else None
+        if made is not None and made[2] == result:
+            self.lines[-1] = f"{made[1]}return {made[3]}"
+        else:
+            self.add(f"return {result};")
+
+    def written(self) -> list[str]:
+        """The statements, and each point that is used once written where it is used, if the line stays short."""
+        users: dict[str, list[int]] = {name: [] for name in self._points}
+        for number, line in enumerate(self.lines):
+            for word in _WORD.findall(line) if users else ():
+                if word in users:
+                    users[word].append(number)
+        lines, gone = list(self.lines), set()
+        for name, text in self._points.items():
+            if len(users[name]) != 2:
+                continue
+            declared, used = users[name]
+            for before, after in _ARGUMENT:
+                if before + name + after in lines[used] and len(lines[used]) - len(name) + len(text) <= _LONGEST:
+                    lines[used] = lines[used].replace(before + name + after, before + text + after)
+                    gone.add(declared)
+        return [line for number, line in enumerate(lines) if number not in gone]
 
     def call(self, call: Call, leading: Sequence[str]) -> str:
         """The text of a call: point (and direction, growth) first, then the definition's own arguments."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import IntEnum
 from functools import lru_cache
 from itertools import product
@@ -154,13 +154,41 @@ def _spread(e: Expr, type_: Type, text_of: Lookup) -> str:
     return text_of(e).text if e.type.size >= type_.size else f"{type_name(type_)}({text_of(e).text})"
 
 
-def _vector(node: Expr, text_of: Lookup, depth: int) -> Text:
+def operands(node: Expr) -> Sequence[Expr]:
+    """What the text of a node is made of: its arguments, each that is written once given once, and a vector where they
+    are all of its components."""
+    if node.op is not Op.VECTOR:
+        return node.args
     if all(a is node.args[0] for a in node.args):
-        return Text(f"{type_name(node.type)}({text_of(node.args[0]).text})", depth=depth)
+        return node.args[:1]
+    found: list[Expr] = []
+    rest = node.args
+    while rest:
+        whole = _whole(rest)
+        found.append(rest[0] if whole is None else whole)
+        rest = rest[1 if whole is None else whole.type.size :]
+    return found
+
+
+def _whole(arguments: Sequence[Expr]) -> Expr | None:
+    """The vector whose components, all of them in order, the arguments begin with."""
+    vector = arguments[0].args[0] if arguments[0].op is Op.SWIZZLE else None
+    if vector is None or not 1 < vector.type.size <= len(arguments):
+        return None
+    components = enumerate(arguments[: vector.type.size])
+    return (
+        vector if all(a.op is Op.SWIZZLE and a.args[0] is vector and a.value == (i,) for i, a in components) else None
+    )
+
+
+def _vector(node: Expr, text_of: Lookup, depth: int) -> Text:
+    made_of = operands(node)
+    if len(made_of) == 1:
+        return Text(f"{type_name(node.type)}({text_of(made_of[0]).text})", depth=depth)
     parts: list[
         tuple[Text | None, str]
     ] = []  # (the vector that components are taken of, their letters) or (None, text)
-    for argument in node.args:
+    for argument in made_of:
         whole, letters = _component(argument, text_of)
         if whole is not None and parts and parts[-1][0] == whole:
             parts[-1] = (whole, parts[-1][1] + letters)

@@ -41,8 +41,8 @@ class DistanceWriter:
         body = Body(self._live)
         operations = Operations("float", "FAR", "min", "max", self._value, self._least, self._within)
         result = Fold(operations).text(root, body)
-        body.add(f"return {result};")
-        return "\n".join([f"float {name}(vec3 p) {{", *body.lines, "}", ""])
+        body.give(result)
+        return "\n".join([f"float {name}(vec3 p) {{", *body.written(), "}", ""])
 
     def _value(self, part: Part, body: Body, inside: bool) -> str:
         if not math.isfinite(self._slopes[id(part)]):

@@ -15,7 +15,8 @@ from typing import TypeAlias
 from sdfc.field.function import Function
 from sdfc.field.graph import Expr, Op, params_of
 from sdfc.field.order import evaluation_order
-from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose, leaf
+from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose, leaf, operands
+from sdfc.glsl.gathered import gathered
 from sdfc.glsl.in_place import CHAIN, DEPTH, WIDTH, InPlace, NeedsLocalError
 from sdfc.glsl.names import PARAM_PREFIX, Names, identifier, literal, param_name, type_name
 from sdfc.record import dataclass
@@ -137,8 +138,10 @@ class _Block:
         self._uses = _count_uses(inner, given, roots)
         order = [n for n in _in_order(roots, given) if n in self._uses]
         self._spine = _spines(order, self._uses)
+        self._gathered = gathered(order, self._uses, called)
         for node in order:
-            self._print(node)
+            if node not in self._texts:
+                self._print(node)
 
     def _name_leaves(
         self, there: Callable[[Expr], Text | None], roots: Sequence[Expr]
@@ -181,6 +184,10 @@ class _Block:
         self._texts[node] = text
         if node in self._spine:
             self._update(node)
+        elif node in self._gathered:
+            vector = self._gathered[node]
+            if vector is not None:
+                self._gather(vector)
         elif (self._uses[node] > 1 or node in self._called) and not self._is_trivial(node):
             self._declare(node)
 
@@ -210,11 +217,24 @@ class _Block:
             text = self._texts[e]
             return e.op is not Op.CONST, text.depth if by_depth else 0, len(text.text)
 
-        candidates = [a for a in node.args if (a.args or a.type.size > 1) and not self._texts[a].is_name]
+        candidates = [a for a in operands(node) if (a.args or a.type.size > 1) and not self._texts[a].is_name]
         return max(candidates, key=burden, default=None)
 
     def _declare(self, node: Expr) -> None:
         self._texts[node] = Text(self._local(node, self._texts[node].text), is_name=True)
+
+    def _gather(self, vector: Expr) -> None:
+        """A local of the vector; its components are that one's. Where it gets too long, a local of each."""
+        text = self._composed(vector)
+        if len(text.text) > WIDTH or text.depth > DEPTH:
+            for component in vector.args:
+                self._declare(component)
+            return
+        self._texts[vector] = text
+        self._declare(vector)
+        name = self._texts[vector].text
+        for component, letter in zip(vector.args, "xyzw", strict=False):
+            self._texts[component] = Text(f"{name}.{letter}", is_name=True)
 
     def _local(self, node: Expr, text: str) -> str:
         name = self._scope.fresh(self._called.get(node) or local_name(node))
@@ -290,12 +310,8 @@ def _count_uses(inner: Sequence[Expr], given: Sequence[Expr], roots: Sequence[Ex
         if root in uses:
             uses[root] += 1
     for node in (*given, *reversed(inner)):
-        args, count = node.args, 1
-        if node.op is _SWIZZLE:
-            count = uses.get(node, 1)
-        elif node.op is _VECTOR and args.count(args[0]) == len(args):
-            args = args[:1]
-        for argument in args:
+        count = uses.get(node, 1) if node.op is _SWIZZLE else 1
+        for argument in operands(node) if node.op is _VECTOR else node.args:
             if argument in uses:
                 uses[argument] += count
     return uses

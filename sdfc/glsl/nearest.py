@@ -63,8 +63,8 @@ class NearestWriter(SurfaceWriter):
             self._varying = []
         body = Body(self._live)
         result = self._fold(root, body)
-        body.add(f"return {result};")
-        function = "\n".join(["Surface surface(vec3 p) {", *body.lines, "}", ""])
+        body.give(result)
+        function = "\n".join(["Surface surface(vec3 p) {", *body.written(), "}", ""])
         properties = self._listed() if self._is_listed else self._mixed()
         return NearestText(_other_names(self._structure()), _other_names(function), "\n".join(properties))
 
@@ -98,6 +98,9 @@ class NearestWriter(SurfaceWriter):
         texts = body.texts([property_of(material, name) for name in PROPERTIES])
         body.add(f"return Properties({', '.join(texts)});")
         return body.lines
+
+    def _gradient_name(self, part: Part, role: Role) -> str:
+        return f"g_{part.name}"
 
     def _leaf(
         self,

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import assert_never
 
-from sdfc.field.graph import Expr, FieldGraph, Type
+from sdfc.field.graph import Expr, FieldGraph, Op, Type
 from sdfc.glsl.body import Body, own_point
 from sdfc.glsl.expression import literal, type_name
 from sdfc.glsl.functions import Functions, Role
@@ -93,13 +93,14 @@ class SurfaceWriter:
         self._looks_back = may_have_seams(root)
         body = Body(self._live)
         result = self._fold(root, body)
-        body.add(f"return {result};")
+        body.give(result)
+        lines = body.written()
         head = ["Surface surface(vec3 p, vec3 d, float fine) {"]
         if self._looks_back:
             head.append(f"    vec3 back = -{_BACK} * fine * d, before = p + back;")
-        if any("sunk" in line for line in body.lines):
+        if any("sunk" in line for line in lines):
             head.append(f"    float sunk = {_SUNK} * fine;  // what is marched, in an intersection")
-        function = "\n".join([*head, *body.lines, "}", ""])
+        function = "\n".join([*head, *lines, "}", ""])
         return SurfaceText(self._structure(), function, self._properties())
 
     # declarations
@@ -239,11 +240,7 @@ class SurfaceWriter:
         call = self._functions.of_part(part, role)
         field, sign = body.call(call, [q]), "" if inside else "-"
         if part.inverse is not None and not is_translation(part.inverse):
-            name = f"g_{part.name}{'' if role is Role.SURFACE else '_distance'}"
-            if name not in self._declared:  # a part may have several places in the tree
-                self._declared.add(name)
-                body.declare(Type.VEC4, name, field, part.span)
-            field = body.text(self._turned(part, name, stretch))
+            field = self._turned_back(part, role, field, stretch, body)
         elif not (stretch.is_constant and stretch.number == 1.0):
             field = f"({body.text(stretch)} * {field})"
         rank = ""
@@ -262,6 +259,21 @@ class SurfaceWriter:
             look = body.call(self._functions.of_part(part, Role.LOOK), [q])
             return self._made("painted", sign + field, rank, look)
         return self._made(self._names[id(part.material)], sign + field, rank)
+
+    def _turned_back(self, part: Part, role: Role, field: str, stretch: Expr, body: Body) -> str:
+        """The text of what the part's function gives, in the scene's space: a swizzle of the call if that is enough."""
+        name = self._gradient_name(part, role)
+        turned = self._turned(part, name, stretch)
+        if turned.op is Op.VECTOR and all(a.op is Op.SWIZZLE for a in turned.args):
+            return f"{field}.{''.join('xyzw'[int(i)] for a in turned.args for i in a.value or ())}"
+        if name not in self._declared:  # a part may have several places in the tree
+            self._declared.add(name)
+            body.declare(Type.VEC4, name, field, part.span)
+        return body.text(turned)
+
+    def _gradient_name(self, part: Part, role: Role) -> str:
+        """Of the local that holds what the part's function gives."""
+        return f"g_{part.name}{'' if role is Role.SURFACE else '_distance'}"
 
     def _turned(self, part: Part, name: str, stretch: Expr) -> Expr:
         """The gradient in the scene's space: A^T g for the map p -> A p + b to the part's own space."""

@@ -43,10 +43,14 @@ Talk = Callable[[ServerConnection], None]
 
 
 class Door:
-    """Open from the start. `talk` has a page's WebSocket until it returns, in a thread of that page's own."""
+    """Open from the start. `talk` has a page's WebSocket until it returns, in a thread of that page's own.
 
-    def __init__(self, port: int, talk: Talk) -> None:
-        self._sockets: set[socket.socket] = set()
+    `expects` is called, in any thread, when a browser asks for the page: its WebSocket comes soon.
+    """
+
+    def __init__(self, port: int, talk: Talk, expects: Callable[[], None]) -> None:
+        self._expects = expects
+        self._sockets: dict[socket.socket, bool] = {}  # in the order in which they came; whether it is a page's
         self._lock = threading.Lock()
         self._is_closed = False
         self._server = self._opened(port, talk)
@@ -90,12 +94,27 @@ class Door:
             raise RequestError(f"cannot serve on port {port} ({words}): give another, or 0 for any free one") from None
 
     def _come(self, guest: socket.socket) -> None:
-        """Remember who is in. What this raises turns them away."""
+        """Remember who is in. What this raises turns them away.
+
+        Where it is full, the one who came first of those that are no pages has to go: they have had their file, or they
+        say nothing.
+        """
         with self._lock:
-            self._sockets = {known for known in self._sockets if known.fileno() >= 0}
+            self._sockets = {known: is_page for known, is_page in self._sockets.items() if known.fileno() >= 0}
+            if not self._is_closed and len(self._sockets) >= MOST_GUESTS:
+                passing = [known for known, is_page in self._sockets.items() if not is_page]
+                for known in passing[:1]:
+                    del self._sockets[known]
+                    shut(known)
             if self._is_closed or len(self._sockets) >= MOST_GUESTS:
                 raise ConnectionRefusedError("nobody else gets in")
-            self._sockets.add(guest)
+            self._sockets[guest] = False
+
+    def _stays(self, guest: socket.socket) -> None:
+        """It is a page's."""
+        with self._lock:
+            if guest in self._sockets:
+                self._sockets[guest] = True
 
     def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
         """An HTTP response; None for a page that may have the WebSocket."""
@@ -104,11 +123,15 @@ class Door:
         if not _is_one_of(self._hosts, request.headers.get_all("Host")):
             return _plain(HTTPStatus.FORBIDDEN)
         if request.path == LIVE:
-            is_ours = _is_one_of(self._origins, request.headers.get_all("Origin"))
-            return None if is_ours else _plain(HTTPStatus.FORBIDDEN)
+            if not _is_one_of(self._origins, request.headers.get_all("Origin")):
+                return _plain(HTTPStatus.FORBIDDEN)
+            self._stays(connection.socket)
+            return None
         name = _FILES.get(request.path.partition("?")[0])  # what a link may have added is nobody's
         if name is None:
             return _plain(HTTPStatus.NOT_FOUND)
+        if name == "index.html":
+            self._expects()
         return _response(HTTPStatus.OK, page.FILES[name], page.content(name))
 
     def close(self) -> None:

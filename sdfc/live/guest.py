@@ -41,7 +41,7 @@ class Guest:
 
     @property
     def wish(self) -> Wish | None:
-        """What it asked for last, until that is done."""
+        """What it asked for last, until that is done, or it is gone."""
         with self._lock:
             return self._wish
 
@@ -67,6 +67,8 @@ class Guest:
             pass
         finally:
             self.drop()
+            with self._lock:
+                self._wish = None
             with contextlib.suppress(queue.Full):  # then the sender does not wait for more, and finds out
                 self._waiting.put_nowait(None)
 

@@ -15,55 +15,93 @@ from sdfc.live.door import Door
 from sdfc.live.edits import Shown
 from sdfc.live.guest import Guest
 from sdfc.live.messages import Message, text_of
-from sdfc.live.painter import Painter
+from sdfc.live.painter import Painter, StoppedError
 from sdfc.live.wishes import Wish
 
 
 class Pages:
-    """Any number of them. One that comes late is told at once what the others see."""
+    """Any number of them. One that comes late is told what the others see.
+
+    What a page needs to begin is dear to make, and nobody makes it where no page is or comes; and it is made in the
+    thread of the watch alone (`greet`), since it adds to the scene's own graphs.
+    """
 
     def __init__(self, port: int, wanted: Callable[[], None]) -> None:
-        self._wanted = wanted  # called, in any thread, when a page asks for a picture
+        self._wanted = wanted  # called, in any thread, when a page is to be told the scene, or asks for a picture
         self._lock = threading.Lock()
-        self._guests: list[Guest] = []
+        self._guests: list[Guest] = []  # those who are told
+        self._coming: list[Guest] = []  # those who wait for `greet`
+        self._is_expecting = False  # a browser is loading the page
         self._shown: Shown | None = None
-        self._scene: dict[str, Any] = {}  # the message, with what was told since
+        self._number = 0  # of the scene that is shown
+        self._scene: dict[str, Any] = {}  # its message, with what was told since; empty until a page needs it
         self._errors: Message | None = None
-        self._door = Door(port, self._welcome)
+        self._door = Door(port, self._welcome, self._expect)
 
     @property
     def address(self) -> str:
         """What to open in a browser."""
         return self._door.address
 
+    def _expect(self) -> None:
+        self._is_expecting = True
+        self._wanted()
+
     def _welcome(self, connection: ServerConnection) -> None:
         guest = Guest(connection)
         with self._lock:
-            for message in (self._scene, self._errors):
-                if message:
-                    guest.send(text_of(message))
-            self._guests.append(guest)
+            is_at_hand = bool(self._scene) or self._shown is None
+            if is_at_hand:
+                self._begin_with(guest)
+            else:
+                self._coming.append(guest)
+        if not is_at_hand:
+            self._wanted()
         try:
             guest.listen(self._wanted)
         finally:
             with self._lock:
-                self._guests.remove(guest)
+                (self._guests if guest in self._guests else self._coming).remove(guest)
+
+    def _begin_with(self, guest: Guest) -> None:
+        """From now on it is told what the others are. For who has the lock."""
+        for message in (self._scene, self._errors):
+            if message:
+                guest.send(text_of(message))
+        self._guests.append(guest)
+
+    def greet(self) -> None:
+        """Tell the scene to those who have come since. Where it cannot be told, they wait for the next."""
+        with self._lock:
+            is_wanted, self._is_expecting = bool(self._coming) or self._is_expecting, False
+        if not is_wanted:
+            return
+        try:
+            if self._shown is not None and not self._scene:
+                self._scene = messages.scene(self._number, self._shown)
+        finally:
+            with self._lock:
+                coming, self._coming = self._coming, []
+                for guest in coming:
+                    self._begin_with(guest)
 
     def show(self, shown: Shown) -> None:
         """Tell what has changed since the last time."""
         before = self._shown
-        if before is None or before.built.compiled.plan is not shown.built.compiled.plan:
-            self._publish([messages.scene(self._number + 1, shown)])
+        is_other = before is None or before.built.compiled.plan is not shown.built.compiled.plan
+        with self._lock:
+            self._number += is_other
+            if not self._guests:
+                self._shown, self._scene, self._errors = shown, {}, None
+                return
+        if before is None or is_other or not self._scene:
+            self._publish([messages.scene(self._number, shown)])
         else:
             changes = self._changes(before, shown)
             self._publish(changes or ([{"type": "well"}] if self._errors is not None else []))
             if messages.exact(before) != messages.exact(shown):  # last: what is drawn does not wait for them
                 self._publish([{"type": "boxes", "id": self._number, **messages.boxes(shown)}])
         self._shown = shown
-
-    @property
-    def _number(self) -> int:
-        return int(self._scene.get("id", 0))
 
     def _publish(self, changes: Sequence[Message]) -> None:
         with self._lock:
@@ -102,12 +140,18 @@ class Pages:
         for guest in self._guests:
             guest.send(text)
 
-    def answer(self, painter: Painter) -> bool:
-        """Draw for one page that asks for it and whose shader is there; whether there was one. Pages take turns."""
+    def answer(self, painter: Painter, is_needed: Callable[[], bool]) -> bool:
+        """Draw for one page that asks for it and whose shader is there; whether there was one. Pages take turns.
+
+        `is_needed` is asked now and then whether there is something better to do: then the page is drawn for later.
+        """
         with self._lock:
             asking = [(guest, wish) for guest in self._guests if (wish := guest.wish) is not None]
         for guest, wish in asking:
-            frames = self._answered(wish, painter)
+            try:
+                frames = self._answered(guest, wish, painter, is_needed)
+            except StoppedError:
+                return True
             if frames:
                 guest.done(wish)
                 guest.send(*frames)
@@ -115,13 +159,17 @@ class Pages:
                 return True
         return False
 
-    def _answered(self, wish: Wish, painter: Painter) -> tuple[str | bytes, ...]:
-        """The frames of an answer; none while its shader is compiled."""
+    def _answered(
+        self, guest: Guest, wish: Wish, painter: Painter, is_needed: Callable[[], bool]
+    ) -> tuple[str | bytes, ...]:
+        """The frames of an answer; none while its shader is compiled. Raises StoppedError."""
         try:
             shot = _shot(self._shown, wish)
             if not painter.is_ready(shot):
                 return ()
-            picture = painter.draw(shot).encode("png")
+            picture = painter.draw(shot, lambda: is_needed() or guest.wish is None).encode("png")
+        except StoppedError:
+            raise
         except Exception as error:  # its fault, the device's, or a bug in sdfc: the watch goes on
             return (text_of({"type": "refused", "request": wish.request, "text": str(error)}),)
         return text_of({"type": "picture", "request": wish.request}), picture

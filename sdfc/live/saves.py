@@ -39,9 +39,9 @@ class Saves:
         self._thread: threading.Thread | None = None
 
     def look_at(self, folders: Collection[Path]) -> None:
-        """Watch these folders, without those in them."""
+        """Watch these folders, without those in them. One that took another's place is another folder."""
         wanted = frozenset(folder for folder in folders if folder.is_dir())
-        if wanted == self._folders and self._thread is not None and self._thread.is_alive():
+        if wanted == self._folders and self._thread is not None and not self._stop.is_set():
             return
         self.close()
         self._folders, self._stop = wanted, threading.Event()
@@ -57,7 +57,7 @@ class Saves:
         return True
 
     def _run(self, folders: Collection[Path], stop: threading.Event) -> None:
-        from watchfiles import watch
+        from watchfiles import Change, watch
 
         changes = watch(
             *folders,
@@ -70,11 +70,15 @@ class Saves:
             ignore_permission_denied=True,
         )
         try:
-            for _ in changes:
+            for happened in changes:
+                if any(kind is Change.deleted and Path(path) in folders for kind, path in happened):
+                    stop.set()  # what comes in its place is another folder
                 self._happened.set()
                 self._bell.ring()
         except OSError:  # a folder is gone, or the system watches no more: whoever waits looks now and then anyway
-            return
+            pass
+        finally:
+            stop.set()
 
     def close(self) -> None:
         """Stop watching."""

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from sdfc.api.files import write_files
 from sdfc.api.renderer import Renderer, Shot
 from sdfc.api.request import AUTO, View, checked_size, checked_tracer
-from sdfc.diagnostics import DeviceError
 from sdfc.live.edits import Edits, Shown
 from sdfc.live.painter import Painter
 from sdfc.live.saves import Bell
@@ -53,9 +52,10 @@ class Session:
         self.tracer = checked_tracer(tracer)
         self.bell = bell or Bell()  # rung when there is something to do
         self._pages = pages
-        self._painter = Painter(backend, note, worker, self.bell.ring)
         self._edits = Edits(self._options)
+        self._painter = Painter(backend, note, worker, self.bell.ring, self._edits.forget)
         self._waiting: _Waiting | None = None
+        self._is_first = True  # nothing was shown yet
 
     @property
     def renderer(self) -> Renderer:
@@ -75,7 +75,7 @@ class Session:
         """
         shown, watch = self._next(snapshot)
         is_drawn = self.output is not None and shown.speed is not Speed.NOTHING
-        has_time = self._edits.shown is not None or self._pages is not None  # there is something to do meanwhile
+        has_time = not self._is_first or self._pages is not None  # there is something to do meanwhile
         must_wait = is_drawn and has_time and not self._painter.is_ready(self._shot(shown))
         self._tell_pages(shown, watch)
         if not must_wait:
@@ -97,9 +97,17 @@ class Session:
             self._edits.distrust()
         return update
 
-    def answer(self) -> bool:
-        """Draw for one page that asks for a picture, if there is one; whether there was."""
-        return self._pages is not None and self._pages.answer(self._painter)
+    def greet(self) -> None:
+        """Tell pages that have come since what is shown."""
+        if self._pages is not None:
+            self._pages.greet()
+
+    def answer(self, is_needed: Callable[[], bool] = lambda: False) -> bool:
+        """Draw for one page that asks for a picture, if there is one; whether there was.
+
+        `is_needed` is asked now and then: where there is a save to be shown, the page is drawn for after it.
+        """
+        return self._pages is not None and self._pages.answer(self._painter, is_needed)
 
     def _next(self, snapshot: Snapshot) -> tuple[Shown, Stopwatch]:
         """What is to be shown now. What waits is given up, or goes on to wait with other numbers."""
@@ -122,17 +130,14 @@ class Session:
         if self.output is not None and shown.speed is not Speed.NOTHING:
             self._write(self.output, shown, watch)
         self._edits.keep(shown)
+        self._is_first = False
         self._painter.keep(self._edits.recent)
         is_compiled = shown.speed in (Speed.SAME_SHADER, Speed.NEW_SHADER)
         warnings = shown.built.compiled.scene.warnings if is_compiled else ()
         return Update(shown.speed, watch.times, len(shown.built.live), warnings)
 
     def _write(self, output: Path, shown: Shown, watch: Stopwatch) -> None:
-        try:
-            image = self._painter.draw(self._shot(shown))
-        except DeviceError:
-            self._edits.forget()
-            raise
+        image = self._painter.draw(self._shot(shown))
         watch.took("drawing")
         write_files(image, output, "npy")
         watch.took("writing")

@@ -32,18 +32,23 @@ Stamp = tuple[tuple[int, int, int] | None, ...]
 
 def watch(scene: Path, kind: Kind | None, session: Session) -> Iterator[Update | Failure]:
     """An update for every save, the first picture first, for ever. Raises RequestError where there is no scene."""
-    seen: Snapshot | Exception = first_look(scene, kind)
     with Saves(session.bell) as saves:
-        paths = _watched(saves, scene, seen, ())
+        paths = _watched(saves, scene, first_look(scene, kind), ())
         stamp = _stamp(paths)
+        seen = _looked(scene, kind)  # after the stamp: what is saved from now on is seen by the next look
         is_owed = yield from _answered(_told(scene, kind, session, seen))
         is_busy = False
+
+        def is_saved() -> bool:
+            return _stamp(paths) != stamp
+
         while True:
             happened = saves.wait(0.0 if is_busy else _LOOK)
-            if not happened and _stamp(paths) == stamp:
+            if not happened and not is_saved():
                 is_owed = (yield from _answered(_gone_on(session))) or is_owed
-                is_busy = session.answer()  # one picture at a time: a save comes first
+                is_busy = session.answer(is_saved)  # one picture at a time: a save comes first
                 continue
+            is_busy = True  # the bell may have been rung for more than the save
             before, stamp = stamp, _stamp(paths)  # before the look: what is saved during it is seen by the next one
             now = _settled(scene, kind, _looked(scene, kind))
             paths = _watched(saves, scene, now, paths)
@@ -113,14 +118,14 @@ def _told(scene: Path, kind: Kind | None, session: Session, seen: Snapshot | Exc
 
 
 def _gone_on(session: Session) -> Iterator[Update | Failure]:
-    """The update for what was waiting for its shader, if that is there now."""
+    """The update for what was waiting for its shader, if that is there now; and those who have come are greeted."""
     try:
         update = session.go_on()
-    except Exception as error:  # as above
-        yield Failure(error)
-    else:
         if update is not None:
             yield update
+        session.greet()
+    except Exception as error:  # as above
+        yield Failure(error)
 
 
 def _is_read_alike(before: Snapshot, now: Snapshot | Exception) -> bool:

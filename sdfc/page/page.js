@@ -100,7 +100,7 @@ class Page {
   /** @param {import("./scene.js").Told} told */
   #take(told) {
     problem("scene", null);
-    const before = this.#scene;
+    const before = this.#scene?.told.title === told.title ? this.#scene : null; // or a server of another scene
     this.#scene = new Scene(told, before);
     element("waiting").hidden = true;
     element("params").hidden = told.params.length === 0;

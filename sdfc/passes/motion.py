@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TypeAlias
 
 from sdfc.field.graph import Expr, FieldGraph
@@ -132,6 +133,23 @@ def _without_scale(forward: Numbers, inverse: Numbers, scale: float, dimension: 
     third = scale if dimension == 3 else 1.0
     left = [_tidy(v / (third if i % 3 == 2 else scale)) for i, v in enumerate(forward)]
     return tuple(left), tuple([_tidy(v * (third if i // 3 == 2 else scale)) for i, v in enumerate(inverse)])
+
+
+def backward_axes(motion: Fixed, dimension: int) -> list[int]:
+    """The axes of the space moved whose coordinate falls with the first of the scene's that it depends on."""
+    a = motion.inverse
+    return [i for i in range(dimension) if (a[3 * i] or a[3 * i + 1] or a[3 * i + 2]) < 0.0]
+
+
+def turned_round(motion: Fixed, axes: Collection[int]) -> Fixed:
+    """The motion of what was first mirrored across these axes."""
+    if not axes:
+        return motion
+    signs = [-1.0 if i in axes else 1.0 for i in range(3)]
+    forward = [v * signs[i % 3] for i, v in enumerate(motion.forward[:9])]
+    inverse = [v * signs[i // 3] for i, v in enumerate(motion.inverse[:9])]
+    shift = [v * sign for v, sign in zip(motion.inverse[9:], signs, strict=True)]
+    return Fixed((*forward, *motion.forward[9:]), (*inverse, *shift))
 
 
 def _tidy(entry: float) -> float:

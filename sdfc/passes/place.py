@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import assert_never
 
+from sdfc.facts.parity import even_axes
 from sdfc.facts.pointwise import is_pointwise
 from sdfc.field.graph import FieldGraph
-from sdfc.passes.motion import NOWHERE, Motion, Motions, is_nowhere
+from sdfc.passes.motion import NOWHERE, Fixed, Live, Motion, Motions, backward_axes, is_nowhere, turned_round
 from sdfc.passes.rewrite import descend
 from sdfc.shape.definition import Argument
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, ShapeGraph, Union
@@ -15,7 +16,7 @@ from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, P
 def place(root: Shape, graph: ShapeGraph, values: FieldGraph) -> Shape:
     """Afterwards an Affine stands only directly on an Apply, and none is the identity. A uniform scale has gone into
     the lengths of every definition that is dimensionally consistent. Solids are the same sets; fields are the same
-    where maps are similarities."""
+    where maps are similarities. An axis across which a primitive is its own mirror image is turned to point forward."""
     placer = _Placer(graph, values)
     start: Motion = NOWHERE
     return descend(root, start, placer.below, placer.make)
@@ -26,6 +27,7 @@ class _Placer:
         self._graph = graph
         self._values = values
         self._motions = Motions(values)
+        self._even: dict[int, tuple[bool, ...]] = {}
         self._products: dict[tuple[Argument, float], Argument] = {}
 
     def below(self, shape: Shape, motion: Motion) -> list[tuple[Shape, Motion]]:
@@ -66,9 +68,26 @@ class _Placer:
     def _primitive(self, shape: Apply, motion: Motion) -> Shape:
         scale = self._scale(shape, motion)
         if scale is None or scale == 1.0:
-            return self._moved(shape, motion)
+            return self._moved(shape, self._forward(shape, motion))
         scaled = self._graph.apply(shape.definition, self._scaled(shape, scale), (), shape.span)
-        return self._moved(scaled, self._motions.unscaled(motion, scale, shape.dimension))
+        return self._moved(scaled, self._forward(shape, self._motions.unscaled(motion, scale, shape.dimension)))
+
+    def _forward(self, shape: Apply, motion: Motion) -> Motion:
+        """The same place of the primitive, with its axes forward where it has mirror planes across them. Its rays,
+        gauge and bounds are claims about the same solid."""
+        match motion:
+            case Fixed():
+                backward = backward_axes(motion, shape.dimension)
+                if not backward:
+                    return motion
+                key = id(shape.definition)
+                if key not in self._even:
+                    self._even[key] = even_axes(shape.definition, shape.arguments, self._values)
+                return turned_round(motion, [axis for axis in backward if self._even[key][axis]])
+            case Live():
+                return motion
+            case _:
+                assert_never(motion)
 
     def _scale(self, shape: Apply, motion: Motion) -> float | None:
         """The factor that may go into the definition's lengths."""

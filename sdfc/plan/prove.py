@@ -34,7 +34,18 @@ from sdfc.plan.steps import (
     Within,
 )
 from sdfc.record import dataclass
-from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, topological
+from sdfc.shape.graph import (
+    Affine,
+    Apply,
+    Complement,
+    Intersection,
+    Nothing,
+    Paint,
+    Shape,
+    Union,
+    children_of,
+    topological,
+)
 from sdfc.shape.lower import generic, lower_ray
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix
@@ -291,17 +302,8 @@ class Prover:
 
     def _materials_below(self, shape: Shape) -> tuple[Material, ...]:
         """Every material of an operation's parts; the unpainted one where there is an unpainted part, or no part."""
-        found: dict[Material, None] = {}
-        painted: set[int] = set()
-        for node in topological(shape):
-            match node:
-                case Paint():
-                    found[node.material] = None
-                    painted.add(node.child.id)
-                case _:
-                    pass
-        bare = any(_is_bare(node, painted) for node in topological(shape))
-        return tuple(found) + ((self._unpainted,) if bare or not found else ())
+        found = {node.material: None for node in topological(shape) if isinstance(node, Paint)}
+        return tuple(found) + ((self._unpainted,) if _has_bare_part(shape) or not found else ())
 
     def _intervals(self, shape: Apply) -> int:
         """How many intervals the primitive's ray claim gives: the same for all uses of the definition."""
@@ -318,12 +320,17 @@ class Prover:
         return len(lower_ray(generic(shape, self._values), o, d, grow))
 
 
-def _is_bare(shape: Shape, painted: set[int]) -> bool:
-    match shape:
-        case Apply():
-            return shape.definition.is_primitive and shape.dimension == 3 and shape.id not in painted
-        case _:
-            return False
+def _has_bare_part(shape: Shape) -> bool:
+    """Whether one of its primitives is painted nowhere on the way down to it."""
+    waiting, seen = [shape], set[int]()
+    while waiting:
+        node = waiting.pop()
+        if node.id not in seen and not isinstance(node, Paint):
+            seen.add(node.id)
+            waiting += children_of(node)
+            if isinstance(node, Apply) and node.definition.is_primitive:
+                return True
+    return False
 
 
 def _is_near_distance(shape: Apply) -> bool:

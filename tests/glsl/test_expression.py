@@ -116,6 +116,9 @@ def idioms(graph: FieldGraph) -> list[tuple[Expr, str]]:
         (graph.vector(y, z, x), "p.yzx"),
         (graph.vector(x, y), "p.xy"),
         (graph.vector(x, y, 1.0, t), "vec4(p.xy, 1.0, t)"),
+        (graph.vector(x, y, z, t), "vec4(p, t)"),
+        (graph.vector(t, u[0], u[1]), "vec3(t, u)"),
+        (graph.vector(*((2.0 * p)[i] for i in range(3)), t), "vec4(2.0 * p, t)"),
         (graph.vector(t + 1.0, t + 1.0, t + 1.0), "vec3(t + 1.0)"),
         (graph.constant(2.0, 2.0, 2.0) * p, "vec3(2.0) * p"),
         (call(Op.ROUND, t), "floor(t + 0.5)"),
@@ -177,6 +180,23 @@ def test_components_of_one_vector_are_taken_of_a_local() -> None:
     p = graph.input("p")
     turned = graph.abs(p) * 2.0
     assert body(turned[0] + turned[1]) == ["vec3 q = abs(p) * 2.0;", "return q.x + q.y;"]
+
+
+def test_numbers_that_are_one_vector_are_one_local() -> None:
+    graph = FieldGraph()
+    p = graph.input("p")
+    a, b = graph.length(p.swizzle("xz")) - 0.5, graph.abs(p[1]) - 1.0
+    norm = graph.length(graph.max(graph.vector(a, b), 0.0))
+    assert body(graph.min(graph.max(a, b), 0.0) + norm) == [
+        "vec2 q = vec2(length(p.xz) - 0.5, abs(p.y) - 1.0);",
+        "return min(max(q.x, q.y), 0.0) + length(max(q, 0.0));",
+    ]
+    wave = graph.call(Op.SIN, a)  # needs the other
+    assert body(graph.length(graph.vector(a, wave)) + a * wave) == [
+        "float d = length(p.xz) - 0.5;",
+        "float sine = sin(d);",
+        "return length(vec2(d, sine)) + d * sine;",
+    ]
 
 
 def test_a_long_chain_updates_one_variable() -> None:

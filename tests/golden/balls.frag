@@ -105,7 +105,7 @@ vec4 torus_surface(vec3 p, float major, float minor) {
     float len = length(p.xz);
     vec2 q = vec2(len - major, p.y);
     float len_2 = length(q);
-    vec2 q_2 = q * (1.0 / max(len_2, 1e-30));
+    vec2 q_2 = q / max(len_2, 1e-30);
     vec2 q_3 = p.xz * (q_2.x / max(len, 1e-30));
     return vec4(q_3.x, q_2.y, q_3.y, len_2 - minor);
 }
@@ -117,11 +117,10 @@ vec4 twist_1_surface(vec3 p) {
     float sine = sin(product);
     vec3 q = vec3(cosine * p.x - sine * p.z, p.y, sine * p.x + cosine * p.z);
     vec3 q_2 = abs(q) - vec3(0.5);
-    float d = max(q_2.y, q_2.z);
-    float d_2 = max(q_2.x, d);
+    float d = max(q_2.x, max(q_2.y, q_2.z));
     vec3 q_3 = max(q_2, 0.0);
     float len = length(q_3);
-    float sum = len + min(d_2, 0.0);
+    float sum = len + min(d, 0.0);
     float len_2 = length(p.xz);
     float product_2 = 0.34906584 * len_2;
     float root = sqrt(1.0 + product_2 * product_2 / 4.0);
@@ -132,26 +131,22 @@ vec4 twist_1_surface(vec3 p) {
     float ratio_2 = 1.0 / sum_3;
     float opposite = -ratio * ratio_2;
     float product_3 = opposite * (0.5 / max(root_2, 1e-30));
-    float sum_4 = product_3 * 0.6981317 * (sum < 0.0 ? -1.0 : 1.0) + ratio_2 * 2.0;
-    float chosen = d_2 <= 0.0 ? sum_4 : 0.0;
-    bool below = d < q_2.x;
-    float chosen_2 = below ? 0.0 : chosen;
-    bool below_2 = q_2.z < q_2.y;
-    vec3 q_4 = vec3(below ? chosen : 0.0, below_2 ? chosen_2 : 0.0, below_2 ? 0.0 : chosen_2);
-    vec3 q_5 = (q_3 * (sum_4 / max(len, 1e-30)) * max(sign(q_2), 0.0) + q_4) * sign(sign(q) + 0.5);
-    float sum_5 = (q_5.z * p.x + (-q_5.x * p.z)) * cosine + (q_5.z * p.z + q_5.x * p.x) * (-sine);
     float product_4 = product_3 * sum_2;
-    float sum_6 = opposite + product_4 + product_4;
-    float product_5 = sum_6 * (0.5 / max(root, 1e-30)) * 0.25 * product_2;
-    vec2 q_6 = p.xz * ((product_5 + product_5 + sum_6 * 0.5) * 0.34906584 / max(len_2, 1e-30));
-    float sum_7 = q_6.y + (q_5.z * cosine + (-q_5.x * sine));
-    return vec4(q_6.x + (q_5.z * sine + q_5.x * cosine), q_5.y + sum_5 * 0.34906584, sum_7, ratio);
+    float sum_4 = opposite + product_4 + product_4;
+    float product_5 = sum_4 * (0.5 / max(root, 1e-30)) * 0.25 * product_2;
+    vec2 q_4 = p.xz * ((product_5 + product_5 + sum_4 * 0.5) * 0.34906584 / max(len_2, 1e-30));
+    float sum_5 = product_3 * 0.6981317 * (sum < 0.0 ? -1.0 : 1.0) + ratio_2 * 2.0;
+    vec3 q_5 = d <= q_2.z ? vec3(0.0, 0.0, 1.0) : d <= q_2.y ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 q_6 = (d <= 0.0 ? q_5 * sum_5 : vec3(0.0)) + q_3 * (sum_5 / max(len, 1e-30));
+    vec3 q_7 = q_6 * sign(sign(q) + 0.5);
+    float sum_6 = (q_7.z * p.x + (-q_7.x * p.z)) * cosine + (q_7.z * p.z + q_7.x * p.x) * (-sine);
+    float sum_7 = q_4.y + (q_7.z * cosine + (-q_7.x * sine));
+    return vec4(q_4.x + (q_7.z * sine + q_7.x * cosine), q_7.y + sum_6 * 0.34906584, sum_7, ratio);
 }
 
 float map(vec3 p) {
     float d1 = torus(p, 0.52223295, 0.17407766);
-    d1 = max(d1, -(0.87038827 * twist_1_field(p * 1.1489125)));  // test.sdf:1:41
-    return d1;
+    return max(d1, -(0.87038827 * twist_1_field(p * 1.1489125)));  // test.sdf:1:41
 }
 
 // the first hit of what is marched, before `limit`
@@ -187,9 +182,7 @@ Surface surface(vec3 p, vec3 d, float fine) {
     float sunk = 3.0 * fine;  // what is marched, in an intersection
     Surface s1 = unpainted_material(torus_surface(p, 0.52223295, 0.17407766), torus_surface(before, 0.52223295, 0.17407766).w + sunk);
     vec4 g_twist_1 = twist_1_surface(p * 1.1489125);  // test.sdf:1:41
-    vec3 q_2 = g_twist_1.xyz * 1.1489125;
-    s1 = farther(s1, unpainted_material(-vec4(q_2.xyz, g_twist_1.w) * 0.87038827, -0.87038827 * twist_1_surface(before * 1.1489125).w + sunk));
-    return s1;
+    return farther(s1, unpainted_material(-vec4(g_twist_1.xyz * 1.1489125, g_twist_1.w) * 0.87038827, -0.87038827 * twist_1_surface(before * 1.1489125).w + sunk));
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

@@ -145,24 +145,18 @@ float smooth_union_1_field(vec3 p) {
 // A ball around the origin.
 vec4 sphere_distance_surface(vec3 p, float radius) {
     float len = length(p);
-    vec3 q = p * (1.0 / max(len, 1e-30));
-    return vec4(q.xyz, len - radius);
+    return vec4(p / max(len, 1e-30), len - radius);
 }
 
 // A box around the origin; `size` is its edges' lengths.
 vec4 box_distance_surface(vec3 p, vec3 size) {
     vec3 q = abs(p) - size / 2.0;
-    float d = max(q.y, q.z);
-    bool below = d < q.x;
-    float d_2 = max(q.x, d);
-    float chosen = d_2 <= 0.0 ? 1.0 : 0.0;
-    float chosen_2 = below ? 0.0 : chosen;
-    bool below_2 = q.z < q.y;
-    vec3 q_2 = max(q, 0.0);
-    float len = length(q_2);
-    vec3 q_3 = vec3(below ? chosen : 0.0, below_2 ? chosen_2 : 0.0, below_2 ? 0.0 : chosen_2);
-    vec3 q_4 = (q_2 * (1.0 / max(len, 1e-30)) * max(sign(q), 0.0) + q_3) * sign(sign(p) + 0.5);
-    return vec4(q_4.xyz, len + min(d_2, 0.0));
+    float d = max(q.x, max(q.y, q.z));
+    vec3 q_2 = d <= q.z ? vec3(0.0, 0.0, 1.0) : d <= q.y ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 q_3 = max(q, 0.0);
+    float len = length(q_3);
+    vec3 q_4 = ((d <= 0.0 ? q_2 : vec3(0.0)) + q_3 / max(len, 1e-30)) * sign(sign(p) + 0.5);
+    return vec4(q_4, len + min(d, 0.0));
 }
 
 // A union with a fillet (quadratic kernel).
@@ -252,8 +246,7 @@ float trace(vec3 o, vec3 d, float start, float limit) {
 Surface surface(vec3 p, vec3 d, float fine) {
     Surface s1 = red_material(sphere_distance_surface(p, 0.47555065));
     Surface s2 = blue_material(box_distance_surface(p, vec3(1.1888766, 0.356663, 0.356663)));
-    Surface s3 = blended(s1, s2, smooth_union_weights(s1.field.w, s2.field.w, 0.23777533));  // test.sdf:3:9
-    return s3;
+    return blended(s1, s2, smooth_union_weights(s1.field.w, s2.field.w, 0.23777533));  // test.sdf:3:9
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

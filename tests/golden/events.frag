@@ -131,28 +131,22 @@ float sphere(vec3 p, float radius) {
 
 // A cylinder around y, centred.
 float cylinder(vec3 p, float radius, float height) {
-    float d = length(p.xz) - radius;
-    float d_2 = abs(p.y) - height / 2.0;
-    return min(max(d, d_2), 0.0) + length(max(vec2(d, d_2), 0.0));
+    vec2 q = vec2(length(p.xz) - radius, abs(p.y) - height / 2.0);
+    return min(max(q.x, q.y), 0.0) + length(max(q, 0.0));
 }
 
 // A box around the origin; `size` is its edges' lengths.
 vec4 box_surface(vec3 p, vec3 size) {
     vec3 q = abs(p) - size / 2.0;
-    bool below = q.z < q.y;
-    float d = max(q.y, q.z);
-    bool below_2 = d < q.x;
-    float chosen = below_2 ? 0.0 : 1.0;
-    vec3 q_2 = vec3(below_2 ? 1.0 : 0.0, below ? chosen : 0.0, below ? 0.0 : chosen);
-    vec3 q_3 = q_2 * sign(sign(p) + 0.5);
-    return vec4(q_3.xyz, max(q.x, d));
+    float d = max(q.x, max(q.y, q.z));
+    vec3 q_2 = d <= q.z ? vec3(0.0, 0.0, 1.0) : d <= q.y ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    return vec4(q_2 * sign(sign(p) + 0.5), d);
 }
 
 // A ball around the origin.
 vec4 sphere_surface(vec3 p, float radius) {
     float len = length(p);
-    vec3 q = p * (1.0 / max(len, 1e-30));
-    return vec4(q.xyz, len - radius);
+    return vec4(p / max(len, 1e-30), len - radius);
 }
 
 // A cylinder around y, centred.
@@ -168,8 +162,7 @@ vec4 cylinder_surface(vec3 p, float radius, float height) {
 float map(vec3 p) {
     float d1 = box(p, vec3(1.1547005));  // test.sdf:1:10
     d1 = max(d1, sphere(p, 0.6928203));  // test.sdf:1:33
-    d1 = max(d1, -cylinder(p, 0.34641016, 2.309401));  // test.sdf:1:56
-    return d1;
+    return max(d1, -cylinder(p, 0.34641016, 2.309401));  // test.sdf:1:56
 }
 
 // each cut solid from one event to the next
@@ -208,8 +201,7 @@ float trace(vec3 o, vec3 d, float start, float limit) {
 Surface surface(vec3 p, vec3 d, float fine) {
     Surface s1 = unpainted_material(box_surface(p, vec3(1.1547005)));
     s1 = farther(s1, unpainted_material(sphere_surface(p, 0.6928203)));
-    s1 = farther(s1, unpainted_material(-cylinder_surface(p, 0.34641016, 2.309401)));
-    return s1;
+    return farther(s1, unpainted_material(-cylinder_surface(p, 0.34641016, 2.309401)));
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

@@ -98,8 +98,7 @@ float sphere(vec3 p, float radius) {
 // A ball around the origin.
 vec4 sphere_surface(vec3 p, float radius) {
     float len = length(p);
-    vec3 q = p * (1.0 / max(len, 1e-30));
-    return vec4(q.xyz, len - radius);
+    return vec4(p / max(len, 1e-30), len - radius);
 }
 
 // place, size: 16 rows a cluster, the last one padded
@@ -196,8 +195,7 @@ float map(vec3 p) {
             sphere_table_row += 1;
         } while (sphere_table_row < sphere_table_row_end);
     } while (++sphere_table_group < 4);
-    float d1 = d2;
-    return d1;
+    return d2;
 }
 
 // the nearest sphere that the ray has met: where it is, what it measures, its material
@@ -236,8 +234,7 @@ float trace(vec3 o, vec3 d, float start, float limit) {
 
 Surface surface(vec3 p, vec3 d, float fine) {
     vec4 field_sphere_at = sphere_surface(p - sphere_at, sphere_radius);
-    Surface s1 = unpainted_material(field_sphere_at);
-    return s1;
+    return unpainted_material(field_sphere_at);
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

@@ -112,20 +112,18 @@ float sphere(vec3 p, float radius) {
 // Everything on the inner side of a plane: n.p <= offset for the unit normal n, which points out.
 vec4 plane_surface(vec3 p, vec3 normal, float offset) {
     vec3 q = normal / length(normal);
-    return vec4(q.xyz, dot(p, q) - offset);
+    return vec4(q, dot(p, q) - offset);
 }
 
 // A ball around the origin.
 vec4 sphere_surface(vec3 p, float radius) {
     float len = length(p);
-    vec3 q = p * (1.0 / max(len, 1e-30));
-    return vec4(q.xyz, len - radius);
+    return vec4(p / max(len, 1e-30), len - radius);
 }
 
 float map(vec3 p) {
     float d1 = plane(p, vec3(0.0, 1.0, 0.0), -0.57735026);  // test.sdf:7:9
-    d1 = min(d1, sphere(p, 0.57735026));  // test.sdf:7:48
-    return d1;
+    return min(d1, sphere(p, 0.57735026));  // test.sdf:7:48
 }
 
 // the first hit of what is solved in closed form
@@ -145,8 +143,7 @@ float trace(vec3 o, vec3 d, float start, float limit) {
 
 Surface surface(vec3 p, vec3 d, float fine) {
     Surface s1 = unpainted_material(plane_surface(p, vec3(0.0, 1.0, 0.0), -0.57735026));
-    s1 = nearer(s1, glass_material(sphere_surface(p, 0.57735026)));
-    return s1;
+    return nearer(s1, glass_material(sphere_surface(p, 0.57735026)));
 }
 
 // Radiance (VEC3) of the sky along a unit direction.

@@ -90,17 +90,12 @@ vec2 rounded_box_slope(vec3 p, vec3 d, vec3 size, float radius) {
 // A box with rounded edges; `size` is of the whole.
 vec4 rounded_box_surface(vec3 p, vec3 size, float radius) {
     vec3 q = abs(p) - size / 2.0 + radius;
-    float d = max(q.y, q.z);
-    bool below = d < q.x;
-    float d_2 = max(q.x, d);
-    float chosen = d_2 <= 0.0 ? 1.0 : 0.0;
-    float chosen_2 = below ? 0.0 : chosen;
-    bool below_2 = q.z < q.y;
-    vec3 q_2 = max(q, 0.0);
-    float len = length(q_2);
-    vec3 q_3 = vec3(below ? chosen : 0.0, below_2 ? chosen_2 : 0.0, below_2 ? 0.0 : chosen_2);
-    vec3 q_4 = (q_2 * (1.0 / max(len, 1e-30)) * max(sign(q), 0.0) + q_3) * sign(sign(p) + 0.5);
-    return vec4(q_4.xyz, len + min(d_2, 0.0) - radius);
+    float d = max(q.x, max(q.y, q.z));
+    vec3 q_2 = d <= q.z ? vec3(0.0, 0.0, 1.0) : d <= q.y ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 q_3 = max(q, 0.0);
+    float len = length(q_3);
+    vec3 q_4 = ((d <= 0.0 ? q_2 : vec3(0.0)) + q_3 / max(len, 1e-30)) * sign(sign(p) + 0.5);
+    return vec4(q_4, len + min(d, 0.0) - radius);
 }
 
 // the first hit of what is marched, before `limit`

@@ -23,6 +23,8 @@ scene {
 }
 """
 
+OTHER = BALLS.replace("many = 3", "many = 2")
+
 
 class Author:
     """Edits a scene's file, and has each edit drawn."""

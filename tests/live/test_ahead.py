@@ -4,92 +4,26 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
 
 import pytest
-from author import BALLS, SIZE
+from author import BALLS, OTHER, SIZE
+from desk import Desk
 from visitor import PATIENCE, Visitor, visitors
 
-from sdfc.diagnostics import SceneError
+from sdfc.api.renderer import GlRenderer
+from sdfc.diagnostics import DeviceError, SceneError
 from sdfc.live.pages import Pages
-from sdfc.live.saves import Bell
 from sdfc.live.session import Session
 from sdfc.live.snapshot import take
-from sdfc.live.update import Speed, Update
-from sdfc.live.worker import Job, Outcome, Worker
+from sdfc.live.update import Speed
+from sdfc.live.worker import Outcome, Worker
 
 pytestmark = [pytest.mark.gpu, pytest.mark.usefixtures("opengl")]
 
-OTHER = BALLS.replace("many = 3", "many = 2")
 THIRD = BALLS.replace("many = 3", "many = 4")
-
-
-class SlowWorker:
-    """Takes jobs, and is done with them when a test says so."""
-
-    def __init__(self) -> None:
-        self.helps = True
-        self.jobs: list[tuple[Job, Future[Outcome]]] = []
-        self.stops = 0
-
-    def compile(self, job: Job) -> Future[Outcome]:
-        future: Future[Outcome] = Future()
-        self.jobs.append((job, future))
-        return future
-
-    def stop(self) -> None:
-        self.stops += 1
-
-    def finishes(self, outcome: Outcome = Outcome.KEPT) -> None:
-        """All that it was not told to leave."""
-        for _, future in self.jobs:
-            if not future.done():
-                future.set_result(outcome)
-
-
-class Desk:
-    """A session with a worker, for one who looks at the file."""
-
-    def __init__(self, folder: Path, pages: Pages | None = None, has_file: bool = True) -> None:
-        self.scene, self.file = folder / "s.sdf", folder / "o.npy"
-        self.worker, self.bell = SlowWorker(), Bell()
-        output = self.file if has_file else None
-        self.session = Session(output, SIZE, "auto", "gl", print, pages, cast("Worker", self.worker), self.bell)
-
-    def begins(self, text: str) -> Update | None:
-        self.scene.write_text(text)
-        return self.session.begin(take(self.scene))
-
-    def picture(self) -> bytes:
-        return self.file.read_bytes()
-
-
-@pytest.fixture
-def desk(tmp_path: Path) -> Iterator[Desk]:
-    made = Desk(tmp_path)
-    yield made
-    made.session.close()
-
-
-@pytest.fixture
-def picture_of(tmp_path: Path) -> Iterator[Callable[[str], bytes]]:
-    """What a session without a worker draws."""
-    folder = tmp_path / "fresh"
-    folder.mkdir()
-    desk = Desk(folder)
-
-    def drawn(text: str) -> bytes:
-        desk.scene.write_text(text)
-        desk.session.distrust()
-        desk.session.update(take(desk.scene))
-        return desk.picture()
-
-    yield drawn
-    desk.session.close()
 
 
 def test_the_picture_stays_until_the_shader_is_there(desk: Desk, picture_of: Callable[[str], bytes]) -> None:
@@ -209,6 +143,14 @@ def test_what_waits_and_may_not_be_what_was_read_is_not_built_upon(
     assert desk.picture() == picture_of(OTHER)
 
 
+def test_after_what_may_not_be_what_was_read_the_worker_compiles_as_ever(desk: Desk) -> None:
+    desk.begins(BALLS)
+    before = desk.picture()
+    desk.session.distrust()
+    assert desk.begins(OTHER) is None and len(desk.worker.jobs) == 1
+    assert desk.picture() == before, "it stays until the shader is there"
+
+
 @dataclass
 class Served:
     """A desk with pages, and one who looks at them."""
@@ -233,9 +175,12 @@ def serving(tmp_path: Path) -> Iterator[Callable[[bool], Served]]:
             stack.callback(pages.close)
             desk = Desk(tmp_path, pages, has_file)
             stack.callback(desk.session.close)
-            visitor = stack.enter_context(visitors(int(pages.address.rstrip("/").rsplit(":", 1)[1])))
+            port = int(pages.address.rstrip("/").rsplit(":", 1)[1])
+            visitor = stack.enter_context(visitors(port, desk.session.greet))
             assert (desk.begins(BALLS) is None) == has_file, "pages do not wait for the first picture"
-            return Served(desk, visitor(), asked)
+            viewer = visitor()
+            assert asked.acquire(timeout=PATIENCE), "to be told the scene"
+            return Served(desk, viewer, asked)
 
         yield made
 
@@ -292,6 +237,41 @@ def test_what_a_page_waits_for_is_not_given_up_for_numbers(serving: Callable[[bo
     desk.worker.finishes()
     assert desk.session.answer()
     viewer.picture(3)
+
+
+def test_a_compile_that_was_left_does_not_hold_up_what_waits_behind_it(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    desk.begins(BALLS)
+    desk.begins(OTHER)
+    desk.worker.jobs[0][1].set_running_or_notify_cancel()
+    desk.begins(THIRD)
+    assert desk.session.go_on() is None and desk.worker.stops == 0, "it may be done soon"
+    monkeypatch.setattr("sdfc.live.painter._LONG", 0.0)
+    assert desk.session.go_on() is None and desk.worker.stops == 1
+    assert desk.session.go_on() is None and desk.worker.stops == 1, "once"
+
+
+def test_a_device_that_fails_for_a_page_has_no_shader_any_more(
+    serving: Callable[[bool], Served], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(*_: object) -> None:
+        raise DeviceError("gone")
+
+    served = serving(True)
+    desk, viewer = served.desk, served.viewer
+    camera = viewer.hears("scene")["camera"]
+    desk.worker.finishes()
+    assert desk.session.go_on() is not None
+    served.asks(1, camera)
+    with monkeypatch.context() as patched:
+        patched.setattr(GlRenderer, "radiance", fails)
+        assert desk.session.answer()
+    assert viewer.hears("refused")["text"] == "gone"
+    assert desk.begins(f"def unused = 1\n{BALLS}") is None, "it is compiled again"
+    desk.worker.finishes()
+    update = desk.session.go_on()
+    assert update is not None and update.speed is Speed.NEW_SHADER
 
 
 def test_the_real_worker_makes_the_same_picture(tmp_path: Path, picture_of: Callable[[str], bytes]) -> None:

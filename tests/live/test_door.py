@@ -239,18 +239,38 @@ def _received(guest: socket.socket) -> bytes:
         return b""
 
 
-def test_those_who_say_nothing_do_not_fill_the_house_for_ever(port: int) -> None:
+def test_those_who_say_nothing_make_room_the_first_of_them_first(
+    port: int, visitor: Callable[[], Visitor], pages: Pages
+) -> None:
+    seen = visitor()
     silent = [socket.create_connection(("127.0.0.1", port), timeout=PATIENCE) for _ in range(MOST_GUESTS)]
     try:
-        until = time.monotonic() + PATIENCE
-        while reply(port, head(port, "/"))[0] != 0:  # till the last of them is through the door
-            assert time.monotonic() < until, "nobody else gets in"
+        for _ in range(MOST_GUESTS):  # more than a page has files
+            assert reply(port, head(port, "/"))[0] == 200
+        pages.tell("still here")
+        assert seen.hears("note")["text"] == "still here", "a page stays"
         for stranger in silent:
-            assert stranger.recv(100) == b"", "but who says nothing is sent away"
-        assert reply(port, head(port, "/"))[0] == 200
+            assert _received(stranger) == b"", "who says nothing is sent away at last"
     finally:
         for stranger in silent:
             stranger.close()
+
+
+def test_pages_make_no_room(
+    port: int, visitor: Callable[[], Visitor], pages: Pages, wishes: threading.Semaphore
+) -> None:
+    seen = [visitor() for _ in range(MOST_GUESTS)]
+    for one in seen:
+        one.connection.send(json.dumps(DRAW))
+        assert wishes.acquire(timeout=PATIENCE), "it is in"
+    assert reply(port, head(port, "/"))[0] == 0
+    pages.tell("all here")
+    for one in seen:
+        one.hears("note")
+    seen[0].connection.close()
+    until = time.monotonic() + PATIENCE
+    while reply(port, head(port, "/"))[0] != 200:
+        assert time.monotonic() < until, "who leaves does"
 
 
 def test_it_closes_with_everybody_in_it_and_the_port_is_free(

@@ -1,90 +1,31 @@
-"""What pages are told of edits is what they need to draw them, and what they ask for is drawn."""
+"""What pages are told of edits is what they need to draw them."""
 
 from __future__ import annotations
 
+import itertools
 import re
-import threading
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from author import BALLS, SIZE
-from visitor import PATIENCE, Visitor, visitors
+from author import BALLS
+from host import Host
+from visitor import PATIENCE, Visitor, head, reply, visitors
 
 from sdfc.diagnostics import SceneError, show_all
 from sdfc.field.graph import Type
 from sdfc.field.numeric import Evaluator
-from sdfc.image.write import OutputError
-from sdfc.live.pages import Pages
-from sdfc.live.saves import Bell
-from sdfc.live.session import Session
 from sdfc.live.snapshot import take
-from sdfc.live.update import Speed, Update
-from sdfc.pipeline import load
+from sdfc.live.update import Speed
+from sdfc.pipeline import Compiled, load
 from sdfc.shape.lower import lower
 
 ROOT = Path(__file__).parents[2]
 SCENES = ["csg5", "die", "blobs", "column", "lamp", "spheres"]
 CAMERA_UNIFORMS = {"eye", "axis_x", "axis_y", "axis_z", "window", "pixel"}
-
-
-class Host:
-    """Somebody who edits a scene that pages show."""
-
-    def __init__(self, folder: Path, picture: Path | None) -> None:
-        self.bell = Bell()
-        self.asked = threading.Semaphore(0)
-        self.pages = Pages(0, self.asked.release)
-        self.port = int(self.pages.address.rstrip("/").rsplit(":", 1)[1])
-        self.scene = folder / "s.sdf"
-        self.session = Session(picture, SIZE, "auto", "gl", print, self.pages, bell=self.bell)
-
-    def save(self, text: str) -> Update:
-        """As the watch does it."""
-        self.scene.write_text(text)
-        try:
-            update = self.session.update(take(self.scene))
-        except SceneError as error:
-            self.pages.tell_errors(show_all(error.diagnostics), error)
-            self.pages.tell("broken")
-            raise
-        self.pages.tell(update.speed.value)
-        return update
-
-    def answers(self) -> None:
-        """One wish that was made, or is being made."""
-        assert self.asked.acquire(timeout=PATIENCE)
-        assert self.session.answer()
-
-    def close(self) -> None:
-        self.pages.close()
-        self.session.close()
-
-
-@pytest.fixture
-def hosts(tmp_path: Path) -> Iterator[Callable[[Path | None], Host]]:
-    made: list[Host] = []
-
-    def host(picture: Path | None) -> Host:
-        made.append(Host(tmp_path, picture))
-        return made[-1]
-
-    yield host
-    for host_ in made:
-        host_.close()
-
-
-@pytest.fixture
-def host(hosts: Callable[[Path | None], Host]) -> Host:
-    return hosts(None)
-
-
-@pytest.fixture
-def visitor(host: Host) -> Iterator[Callable[[], Visitor]]:
-    with visitors(host.port) as made:
-        yield made
 
 
 def declared(shader: str) -> set[str]:
@@ -216,6 +157,57 @@ def test_whoever_comes_late_is_told_what_the_others_were(host: Host, visitor: Ca
         assert visitor().hears("scene") == known
 
 
+@pytest.fixture
+def printed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The shaders for pages that were printed, as they come."""
+    made: list[str] = []
+    web = Compiled.web
+
+    def counted(self: Compiled, entry: str) -> str:
+        made.append(entry)
+        return web(self, entry)
+
+    monkeypatch.setattr(Compiled, "web", counted)
+    return made
+
+
+def test_shaders_for_pages_are_printed_where_there_are_pages(host: Host, printed: list[str]) -> None:
+    host.save(BALLS)
+    for number in ("0.3", "0.35"):
+        host.save(BALLS.replace("0.25", number))
+    with pytest.raises(SceneError):
+        host.save(BALLS.replace("sphere", "spere"))
+    assert printed == []
+    with visitors(host.port, host.session.greet) as visitor:
+        one, other = visitor(), visitor()
+        first = one.hears("scene")
+        assert first == other.hears("scene")
+        assert one.message() == other.message() and first["values"]["set_literal_1"] == [0.35]
+        assert printed == ["picture", "inspect"], "for the one and for the other"
+        host.save(BALLS.replace("many = 3", "many = 2"))
+        assert one.hears("scene")["id"] == first["id"] + 1
+        assert len(printed) == 4
+    until = time.monotonic() + PATIENCE
+    texts = itertools.cycle(BALLS.replace("many = 3", f"many = {number}") for number in (4, 5))
+    while printed:  # till the last of them has left
+        assert time.monotonic() < until
+        printed.clear()
+        host.save(next(texts))
+
+
+def test_they_are_printed_while_the_page_is_loaded(host: Host, printed: list[str]) -> None:
+    host.save(BALLS)
+    assert reply(host.port, head(host.port, "/page.js"))[0] == 200
+    host.session.greet()
+    assert printed == [], "a page begins with another file"
+    assert reply(host.port, head(host.port, "/"))[0] == 200
+    assert host.asked.acquire(timeout=PATIENCE)
+    host.session.greet()
+    assert printed == ["picture", "inspect"]
+    with visitors(host.port) as visitor:
+        visitor().hears("scene")
+
+
 def test_a_page_that_comes_before_any_scene_waits_for_it(host: Host, visitor: Callable[[], Visitor]) -> None:
     with pytest.raises(SceneError):
         host.save("scene {")
@@ -246,109 +238,3 @@ def test_no_device_is_opened_where_nothing_is_drawn(
     monkeypatch.setattr("sdfc.live.painter.open_renderer", opened)
     for text in (BALLS, BALLS.replace("0.25", "0.3"), BALLS.replace("many = 3", "many = 2")):
         assert host.save(text).speed is Speed.NEW_SHADER
-
-
-@pytest.mark.gpu
-def test_the_servers_picture_is_that_of_the_file(
-    opengl: None, hosts: Callable[[Path | None], Host], tmp_path: Path
-) -> None:
-    host = hosts(tmp_path / "o.png")
-    text = BALLS
-    with visitors(host.port) as visitor:
-        for edit in ("0.3", "0.35", "0.28"):
-            text = BALLS.replace("0.25", edit)
-            host.save(text)
-        page = visitor()
-        told = page.hears("scene")
-        page.asks(1, camera=told["camera"], size=list(SIZE))
-        host.answers()
-        first = page.picture(1)
-        assert first == (tmp_path / "o.png").read_bytes()
-        page.asks(2, camera=told["camera"], size=list(SIZE), params={"size": [0.9]})
-        host.answers()
-        host.save(text.replace("size = 0.5", "size = 0.9"))
-        assert page.picture(2) == (tmp_path / "o.png").read_bytes() != first, "a param is as if it were in the file"
-        page.until_note()
-        camera = {**told["camera"], "eye": [2, 1, 3], "fov": None, "height": 3.0}
-        page.asks(3, camera=camera, size=list(SIZE), params={"size": [0.5]})
-        host.answers()
-        assert page.picture(3) != first
-
-
-@pytest.mark.gpu
-def test_the_newest_wish_of_each_page_is_drawn_once(opengl: None, host: Host, visitor: Callable[[], Visitor]) -> None:
-    host.save(BALLS)
-    pages = [visitor() for _ in range(3)]
-    scenes = [page.hears("scene") for page in pages]
-    for request in range(4):
-        for page in pages:
-            page.asks(request, camera=scenes[0]["camera"])
-    for _ in range(12):
-        assert host.asked.acquire(timeout=PATIENCE)
-    assert [host.session.answer() for _ in range(4)] == [True, True, True, False]
-    assert len({page.picture(3) for page in pages}) == 1
-
-
-@pytest.mark.gpu
-@pytest.mark.parametrize(
-    ("wish", "words"),
-    [
-        ({"params": {"nonsense": [1]}}, "no param 'nonsense'"),
-        ({"params": {"literal_1": [0.3]}}, "no param 'literal_1'"),
-        ({"params": {"size": [2]}}, "outside its range"),
-        ({"params": {"size": [0.3, 0.3]}}, "takes a number"),
-        ({"camera": {"fov": 4.0}}, "fov must be between"),
-        ({"camera": {"eye": [0, 0, 0]}}, "are the same point"),
-        ({"camera": {"up": [0, 0, 0]}}, "up direction is zero"),
-        ({"camera": {"fov": None, "height": 0}}, "height must be above zero"),
-        ({"camera": {"fov": None, "height": None}}, "either a fov or a height"),
-        ({"camera": {"fov": 0.6, "height": 2}}, "either a fov or a height"),
-    ],
-)
-def test_what_the_scene_does_not_have_is_refused_and_the_page_stays(
-    opengl: None, host: Host, visitor: Callable[[], Visitor], wish: dict[str, dict[str, Any]], words: str
-) -> None:
-    host.save(BALLS)
-    host.save(BALLS.replace("0.25", "0.3"))
-    page = visitor()
-    camera = page.hears("scene")["camera"]
-    page.asks(7, params=wish.get("params", {}), camera=camera | wish.get("camera", {}))
-    host.answers()
-    refused = page.hears("refused")
-    assert refused["request"] == 7 and words in refused["text"]
-    page.asks(8, camera=camera)
-    host.answers()
-    page.picture(8)
-
-
-def test_a_wish_before_there_is_a_scene_is_refused(host: Host, visitor: Callable[[], Visitor]) -> None:
-    page = visitor()
-    page.asks(1, camera={"eye": [0, 0, 4], "target": [0, 0, 0], "up": [0, 1, 0], "fov": 0.6, "height": None})
-    host.answers()
-    assert page.hears("refused")["text"] == "there is no picture of the scene yet"
-
-
-@pytest.mark.gpu
-def test_pages_go_on_where_the_file_cannot_be_written(
-    opengl: None, hosts: Callable[[Path | None], Host], tmp_path: Path
-) -> None:
-    """What the file does not show, the pages may: each is told of what it has not seen."""
-    folder = tmp_path / "pictures"
-    folder.mkdir()
-    host = hosts(folder / "o.png")
-    host.save(BALLS)
-    with visitors(host.port) as visitor:
-        page = visitor()
-        before = page.hears("scene")
-        (folder / "o.png").unlink()
-        folder.rmdir()
-        text = BALLS.replace("many = 3", "many = 2")
-        with pytest.raises(OutputError):
-            host.save(text)
-        now = page.hears("scene")
-        assert now["id"] == before["id"] + 1
-        folder.mkdir()
-        host.save(text.replace("eye: [0, 1, 4]", "eye: [1, 1, 4]"))
-        last = page.hears("scene")
-        assert (last["camera"]["eye"], last["shaders"]) == ([1, 1, 4], now["shaders"])
-        assert (folder / "o.png").exists()

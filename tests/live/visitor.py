@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import socket
+import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from http import HTTPStatus
@@ -15,18 +17,27 @@ PATIENCE = 30.0  # seconds, for a machine with much else to do
 
 
 class Visitor:
-    """A page, as the server sees it."""
+    """A page, as the server sees it. `meanwhile` is called while it waits for messages: what a watch does."""
 
-    def __init__(self, connection: ClientConnection) -> None:
+    def __init__(self, connection: ClientConnection, meanwhile: Callable[[], None] | None = None) -> None:
         self.connection = connection
+        self.meanwhile = meanwhile
 
     def message(self) -> dict[str, Any]:
         """The next one."""
-        text = self.connection.recv(timeout=PATIENCE)
+        text = self._received()
         assert isinstance(text, str), "a picture that nobody asked for"
         told = json.loads(text)
         assert isinstance(told, dict)
         return told
+
+    def _received(self) -> str | bytes:
+        until = time.monotonic() + PATIENCE
+        while self.meanwhile is not None and time.monotonic() < until:
+            self.meanwhile()
+            with contextlib.suppress(TimeoutError):
+                return self.connection.recv(timeout=0.01)
+        return self.connection.recv(timeout=PATIENCE)
 
     def hears(self, kind: str) -> dict[str, Any]:
         """The next message, which is of this kind."""
@@ -53,13 +64,13 @@ class Visitor:
 
 
 @contextmanager
-def visitors(port: int) -> Iterator[Callable[[], Visitor]]:
+def visitors(port: int, meanwhile: Callable[[], None] | None = None) -> Iterator[Callable[[], Visitor]]:
     """Makes visitors, who all leave at the end."""
     with ExitStack() as stack:
 
         def visitor() -> Visitor:
             origin = f"http://127.0.0.1:{port}"
-            return Visitor(stack.enter_context(connect(f"ws://127.0.0.1:{port}/live", origin=origin)))  # type: ignore[arg-type]
+            return Visitor(stack.enter_context(connect(f"ws://127.0.0.1:{port}/live", origin=origin)), meanwhile)  # type: ignore[arg-type]
 
         yield visitor
 

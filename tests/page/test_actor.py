@@ -131,6 +131,22 @@ def test_it_connects_again_by_itself(actor: Actor, page: Open) -> None:
     assert refused == []
 
 
+def test_another_scene_at_the_same_address_is_seen_as_its_text_says(actor: Actor, page: Open) -> None:
+    tab = page(actor.url, size=SIZE)
+    before = picture(tab)
+    tab.key("ArrowLeft")
+    tab.run("document.querySelector('#param-size-0').focus()")
+    tab.key("ArrowRight")
+    moved = another(tab, before)
+    actor.say({**actor.scene, "id": 2})
+    tab.until("document.querySelector('#reset-all').matches(':not(.unused)')")
+    assert share_of_others(picture(tab), moved) == 0
+    actor.say({**actor.scene, "title": "other.sdf"})
+    tab.until("document.querySelector('#reset-all').matches('.unused')")
+    tab.until("document.title.startsWith('other.sdf')")
+    assert share_of_others(picture(tab), before) == 0
+
+
 def test_it_asks_for_pictures_that_the_server_can_draw(actor: Actor, page: Open) -> None:
     tab = page(actor.url, size=(2600, 400))
     tab.key("6")

@@ -14,7 +14,7 @@ from sdfc.passes.paint import paint
 from sdfc.passes.place import place
 from sdfc.passes.prune import prune
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, topological
-from sdfc.shape.matrix import rotation, scaling, translation
+from sdfc.shape.matrix import identity, rotation, scaling, translation
 
 
 def names(shape: Shape) -> list[str]:
@@ -121,6 +121,23 @@ def test_there_and_back_is_nowhere() -> None:
         place(w.moved(scaling(w.values, -1, 1, 1), w.moved(scaling(w.values, -1, 1, 1), ball)), w.shapes, w.values)
         is ball
     )
+
+
+def test_axes_across_which_a_primitive_is_its_mirror_image_point_forward() -> None:
+    w = World()
+
+    def turned(axis: int, quarters: int, name: str) -> Shape:
+        turn = rotation(w.values, axis, w.values.constant(0.5 * np.pi * quarters))
+        return place(w.moved(turn, w.apply(name)), w.shapes, w.values)
+
+    rod, cone = turned(2, 1, "cylinder"), turned(0, 2, "cone")
+    assert isinstance(rod, Affine) and isinstance(cone, Affine)
+    assert [[e.number for e in row] for row in rod.inverse.linear] == [[0, 1, 0], [1, 0, 0], [0, 0, 1]]
+    assert rod.forward.after(rod.inverse) == identity(w.values)
+    assert [[e.number for e in row] for row in cone.inverse.linear] == [[1, 0, 0], [0, -1, 0], [0, 0, 1]]
+    assert turned(1, 2, "box") is w.apply("box")
+    plane = turned(0, 2, "plane")
+    assert isinstance(plane, Affine) and plane.inverse.linear[1][1].number == -1.0
 
 
 def test_bumps_move_with_what_they_are_on() -> None:

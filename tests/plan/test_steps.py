@@ -298,3 +298,18 @@ def test_a_stretched_blend_that_is_a_union_after_all(stretch: str) -> None:
 def test_large_scenes_are_compiled_without_recursion_errors(text: str) -> None:
     made = compile_scene(load(Source("large.sdf", text)))
     assert "void main()" in made.glsl("probe")
+
+
+@pytest.mark.parametrize(
+    ("more", "names"),
+    [
+        ("", ("red", "blue")),
+        ("sphere(radius: 0.3).translate([0, 1, 0])", ("red", "blue", "unpainted")),
+        ("rectangle(size: [1, 1]).extrude(height: 1)", ("red", "blue", "unpainted")),
+        ("rectangle(size: [1, 1]).extrude(height: 1).material(red)", ("red", "blue")),
+    ],
+)
+def test_the_unpainted_material_is_there_where_a_part_is_unpainted(more: str, names: tuple[str, ...]) -> None:
+    parts = f"sphere(radius: 0.5).material(red)\nbox(size: [1, 1, 1]).rotate(y: 20deg).material(blue)\n{more}"
+    materials = "material red { color: #ff0000 }\nmaterial blue { color: #0000ff }\n"
+    assert set(compiled(f"{materials}scene {{ union(blend: 0.3) {{ {parts} }} }}").materials) == set(names)
