@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box
 from sdfc.field.graph import Expr
 from sdfc.passes.flatten import is_nothing
 from sdfc.passes.rewrite import descend
-from sdfc.record import dataclass
 from sdfc.shape.graph import (
     Affine,
     Apply,
