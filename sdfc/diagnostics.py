@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Literal
-
-from sdfc.record import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

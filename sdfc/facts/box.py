@@ -5,9 +5,8 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from operator import gt
-
-from sdfc.record import dataclass
 
 INFINITY = math.inf
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from sdfc.field.graph import Expr
-from sdfc.record import dataclass
 
 if TYPE_CHECKING:
     from sdfc.field.interval import ConstantBounds

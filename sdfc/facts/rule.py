@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from sdfc.facts.bend import Bends, core_of
 from sdfc.facts.bounds import Bounds
@@ -13,7 +13,6 @@ from sdfc.facts.exactness import exactness
 from sdfc.facts.lipschitz import Lipschitz
 from sdfc.facts.ranges import Ranges
 from sdfc.field.graph import Expr, Type
-from sdfc.record import dataclass
 from sdfc.shape.definition import Exactness
 from sdfc.shape.graph import Apply
 from sdfc.shape.lower import Lowering

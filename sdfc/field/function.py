@@ -1,10 +1,9 @@
 """A named function over the field graph: what is printed as one GLSL function and evaluated as one NumPy call."""
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sdfc.field.graph import Expr, Type
-from sdfc.record import dataclass
 
 
 @dataclass(frozen=True, slots=True)

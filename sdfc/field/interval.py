@@ -6,6 +6,7 @@ Everything is rounded outward: the answer encloses the value in real arithmetic,
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -26,7 +27,6 @@ from sdfc.field.interval_rules import (
 )
 from sdfc.field.interval_slopes import SLOPES, STILL, Slope
 from sdfc.field.order import evaluation_order
-from sdfc.record import dataclass
 
 # a param's value, or a pair (lo, hi) of values
 Parameters: TypeAlias = Mapping[str, ArrayLike]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -10,7 +11,6 @@ import numpy.typing as npt
 
 from sdfc.field.graph import LEAVES, Expr, Op, Type
 from sdfc.field.order import evaluation_order
-from sdfc.record import dataclass
 
 Array: TypeAlias = npt.NDArray[Any]
 Real: TypeAlias = type[np.floating[Any]]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from sdfc.field.folding import fold
 from sdfc.field.graph import Expr, Op, Value, topological
-from sdfc.record import dataclass
 
 Numbers: TypeAlias = tuple[float, ...]
 

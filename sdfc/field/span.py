@@ -15,11 +15,12 @@ Read with the value: f(q + tau d) lies between f(q) + lo tau and f(q) + hi tau u
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from sdfc.field.graph import Expr, FieldGraph, topological
 from sdfc.field.span_ranges import HUGE, Range, point
 from sdfc.field.span_rules import RULES
 from sdfc.field.span_walk import Bend, Track, Walk
-from sdfc.record import dataclass
 
 UNIT = 2.0**-20
 

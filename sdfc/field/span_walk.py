@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 
 from sdfc.field.derivative import tangents
 from sdfc.field.graph import Expr, Op, Type, topological
 from sdfc.field.span_ranges import Range, Ranges, point
-from sdfc.record import dataclass
 
 SLACK = 2.0**-21
 

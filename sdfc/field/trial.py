@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
@@ -16,7 +17,6 @@ from sdfc.field.numeric import Evaluator
 from sdfc.field.piece import SHORT, look
 from sdfc.field.span import span
 from sdfc.field.span_ranges import HUGE
-from sdfc.record import dataclass
 
 Array = NDArray[np.float64]
 Params: TypeAlias = Mapping[str, ArrayLike]

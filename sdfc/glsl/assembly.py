@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache, lru_cache
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -26,7 +27,6 @@ from sdfc.plan.plan import CUT, FINE, GROW, HORIZON, LIFT, MOST_LOOPS, SMALLEST_
 from sdfc.plan.setting import Setting
 from sdfc.plan.steps import Step, is_finite
 from sdfc.plan.view import uniform_name
-from sdfc.record import dataclass
 from sdfc.scene.model import Param
 from sdfc.shade.ambient import OCCLUSION_HEIGHTS
 from sdfc.shade.functions import FUNCTIONS

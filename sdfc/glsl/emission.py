@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from sdfc.field.graph import FieldGraph
 from sdfc.glsl.assembly import Assembly, environment
@@ -20,7 +20,6 @@ from sdfc.glsl.targets.record import Brief, Control, Eye, Numbers, Part, Target,
 from sdfc.plan.plan import Plan
 from sdfc.plan.setting import Setting
 from sdfc.plan.view import uniform_name
-from sdfc.record import dataclass
 
 _ENTRY: Mapping[Part, str] = {"field": "field", "tracer": "tracer", "full": "picture"}
 _FIELD = ("sdf", "gradient", "material", "properties")

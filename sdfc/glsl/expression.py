@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TypeAlias
 
@@ -19,7 +20,6 @@ from sdfc.glsl.composition import Level, Text, clamp, clamp_limits, compose, lea
 from sdfc.glsl.gathered import gathered
 from sdfc.glsl.in_place import CHAIN, DEPTH, WIDTH, InPlace, NeedsLocalError
 from sdfc.glsl.names import PARAM_PREFIX, Names, identifier, literal, param_name, type_name
-from sdfc.record import dataclass
 
 __all__ = ["DEPTH", "WIDTH", "Printed", "Printer", "literal", "print_function", "printed", "type_name"]
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import assert_never
 
 from sdfc.diagnostics import Span
 from sdfc.glsl.body import Body
 from sdfc.plan.steps import All, Any, Ball, Blend, Chord, Closed, Many, Part, Step, Tangent, Within
-from sdfc.record import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

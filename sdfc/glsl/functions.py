@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from enum import Enum
 from typing import TypeAlias, assert_never
 
@@ -15,7 +16,6 @@ from sdfc.field.span import span
 from sdfc.glsl.expression import Printed, printed
 from sdfc.glsl.names import LOCALS, Names, param_name
 from sdfc.plan.steps import Part
-from sdfc.record import dataclass
 from sdfc.shape.definition import Argument, Definition, Kind
 from sdfc.shape.graph import Apply
 from sdfc.shape.look import Looks

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import assert_never
 
 from sdfc.field.graph import Expr, FieldGraph
 from sdfc.glsl.body import Body
 from sdfc.glsl.live import Live
-from sdfc.record import dataclass
 from sdfc.scene.model import Light, PointLight, Sky, Sun
 
 

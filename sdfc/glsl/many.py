@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.glsl.body import Body, place
@@ -16,7 +17,6 @@ from sdfc.glsl.functions import Functions, Role
 from sdfc.glsl.live import Live
 from sdfc.plan.cluster import CLUSTER, clustered
 from sdfc.plan.steps import Closed, Many
-from sdfc.record import dataclass
 from sdfc.shape.material import Material
 
 _SKIN = 4e-6  # boxes hold what they hold with rounding, and with the growth that closes cracks

@@ -9,6 +9,7 @@ the ray. This one asks the distances themselves, at any point.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from sdfc.field.graph import FieldGraph
 from sdfc.glsl.body import Body
@@ -17,7 +18,6 @@ from sdfc.glsl.live import Live
 from sdfc.glsl.source import joined, parse, renamed
 from sdfc.glsl.surface import PROPERTIES, SurfaceWriter, property_of
 from sdfc.plan.steps import Ball, Blend, Part, Step, leaves_of
-from sdfc.record import dataclass
 from sdfc.shape.material import Material
 
 _NAMES = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import assert_never
 
@@ -36,7 +36,6 @@ from sdfc.plan.steps import (
     leaves_of,
 )
 from sdfc.plan.touch import Side, are_thick_together, convex_of, is_grown, thickest_skin
-from sdfc.record import dataclass
 
 # how much larger the solid is: a constant of the templates, and its sign
 _SIZES = {Side.WHOLE: ("GROW", 1.0), Side.CORE: ("CUT", -1.0), Side.CUT: ("CUT", 1.0)}

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from sdfc.field.graph import Expr
 from sdfc.glsl.body import Body
 from sdfc.plan.touch import Side
-from sdfc.record import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
 
 from sdfc.diagnostics import InternalError
-from sdfc.record import dataclass
 
 _TOKEN = re.compile(r"//[^\n]*|[A-Za-z_]\w*|\.?\d(?:[\w.]|(?<=[eE])[+-])*|\s+|.", re.DOTALL)
 _WORD = re.compile(r"[A-Za-z_]\w*\Z")

@@ -8,6 +8,7 @@ One that it runs along is not, nor one that is buried where two parts touch, who
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import assert_never
 
 from sdfc.field.graph import Expr, FieldGraph, Op, Type
@@ -36,7 +37,6 @@ from sdfc.plan.steps import (
     Within,
     may_have_seams,
 )
-from sdfc.record import dataclass
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import transposed
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from sdfc.diagnostics import Diagnostic, InternalError, Source, Span
 from sdfc.field.graph import Expr, FieldGraph
@@ -12,7 +13,6 @@ from sdfc.openscad.fields import field
 from sdfc.openscad.polytope import Plane
 from sdfc.openscad.refusal import RefusalError
 from sdfc.openscad.space import Map3, Point
-from sdfc.record import dataclass
 from sdfc.scene.library import Library
 from sdfc.shape.definition import Argument, Definition
 from sdfc.shape.graph import Affine, Shape, ShapeGraph

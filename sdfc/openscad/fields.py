@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
 
 from sdfc.diagnostics import Source, Span
 from sdfc.field.graph import Expr, FieldGraph
-from sdfc.record import dataclass
 from sdfc.scene.define import define
 from sdfc.scene.formula import Helper
 from sdfc.shape.definition import Definition

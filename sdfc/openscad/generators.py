@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TypeAlias, assert_never
 
 from sdfc.openscad.refusal import RefusalError
 from sdfc.openscad.space import SIMILAR, Map3, Point, cross, direction, dot, frame, moved_point, norm, similarity
-from sdfc.record import dataclass
 
 
 @dataclass(frozen=True, slots=True)

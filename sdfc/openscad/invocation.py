@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from sdfc.diagnostics import SceneError, Span, scene_error
 from sdfc.openscad.context import Context
 from sdfc.openscad.part import Flat, Part, Solid
 from sdfc.openscad.plane import Plane
 from sdfc.openscad.syntax import Argument, Call, Value
-from sdfc.record import dataclass
 
 FACETS_THAT_COUNT = 50  # an explicit $fn below this means the polygon; from here on it stands for the curve
 

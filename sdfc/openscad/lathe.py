@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import assert_never
 
 from sdfc.diagnostics import Span
@@ -14,7 +15,6 @@ from sdfc.openscad.plane import Common, Disc, Joined, Outside, Plane, Polygon, S
 from sdfc.openscad.polytope import Plane as Plane3
 from sdfc.openscad.profile import profile
 from sdfc.openscad.refusal import RefusalError
-from sdfc.record import dataclass
 from sdfc.shape.graph import Shape
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from sdfc.diagnostics import scene_error
 from sdfc.openscad import booleans, flats, hulls, solids, sweeps
 from sdfc.openscad.invocation import Invocation
 from sdfc.openscad.part import Part
-from sdfc.record import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from sdfc.openscad.refusal import RefusalError
-from sdfc.record import dataclass
 
 Point2: TypeAlias = tuple[float, float]
 Edge: TypeAlias = tuple[Point2, float]  # unit normal n (out of the region) and offset d: inside where n . p <= d

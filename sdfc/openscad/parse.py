@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from lark import Lark, Token, Transformer
+from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
 from sdfc import packaged
 from sdfc.diagnostics import SceneError, Source, Span, scene_error
 from sdfc.openscad.syntax import Argument, Call, Value
-from sdfc.syntax import tables
-from sdfc.syntax.machine import END, Machine, StuckError, Token
-
-if TYPE_CHECKING:
-    from lark.exceptions import UnexpectedInput
+from sdfc.syntax.tables import load
 
 LARGEST = 1e12
 FLATTEN = "flattened CSG has no variables: write it with `openscad -o model.csg model.scad`"
@@ -41,7 +40,7 @@ class _WrongValueError(Exception):
     """A token that no value can be made of; carries it."""
 
     def __init__(self, token: Token) -> None:
-        super().__init__(token.text)
+        super().__init__(str(token))
         self.token = token
 
 
@@ -53,7 +52,7 @@ def _number(text: str) -> float:
     return value
 
 
-class _Build:
+class _Build(Transformer[Token, Any]):
     """One method for each rule, called when its parts have been read."""
 
     def start(self, children: list[Any]) -> tuple[Call, ...]:
@@ -63,8 +62,8 @@ class _Build:
         body = children.pop()
         first = next(i for i, c in enumerate(children) if c.type == "NAME")
         name = children[first]
-        modifiers = "".join([modifier.text for modifier in children[:first]])
-        return Call(name.text, modifiers, tuple(children[first + 1 :]), body, name.span.start, name.span.end)
+        modifiers = "".join(children[:first])
+        return Call(str(name), modifiers, tuple(children[first + 1 :]), body, name.start_pos, name.end_pos)
 
     def body(self, children: list[Any]) -> tuple[Call, ...]:
         return tuple(children)
@@ -74,11 +73,11 @@ class _Build:
         if len(children) == 1:
             return Argument(None, value, start, end)
         key = children[0]
-        return Argument(key.text[:-1].rstrip(), value, key.span.start, end)
+        return Argument(key[:-1].rstrip(), value, key.start_pos, end)
 
     def list(self, children: list[Any]) -> tuple[int, int, Value]:
         first, *items, last = children
-        return first.span.start, last.span.end, tuple([_value(item)[2] for item in items])
+        return first.start_pos, last.end_pos, tuple(_value(item)[2] for item in items)
 
 
 def _value(token: Any) -> tuple[int, int, Value]:
@@ -86,52 +85,52 @@ def _value(token: Any) -> tuple[int, int, Value]:
     if type(token) is tuple:
         return token
     try:
-        value = _CONVERT[token.type](token.text)
+        value = _CONVERT[token.type](token)
     except (ValueError, KeyError):
         raise _WrongValueError(token) from None
-    return token.span.start, token.span.end, value
+    return token.start_pos, token.end_pos, value
 
 
 _CONVERT: dict[str, Any] = {
     "NUMBER": _number,
-    "NUMBERS": lambda text: tuple([_number(item) for item in text[1:-1].split(",")]),
-    "STRING": lambda text: text[1:-1],
-    "NAME": lambda text: _WORDS[text],
+    "NUMBERS": lambda token: tuple(_number(item) for item in token[1:-1].split(",")),
+    "STRING": lambda token: token[1:-1],
+    "NAME": lambda token: _WORDS[token],
 }
 
 
 @cache
-def _machine() -> Machine:
-    return tables.load(_grammar(), _Build())
-
-
-def _grammar() -> str:
-    return (packaged.folder("sdfc.grammar") / "csg.lark").read_text(encoding="utf-8")
+def _parser() -> Lark:
+    grammar = (packaged.folder("sdfc.grammar") / "csg.lark").read_text(encoding="utf-8")
+    return load(grammar, _Build())
 
 
 def parse(source: Source) -> tuple[Call, ...]:
     """The calls of a file, in order. Raises SceneError where it is not flattened CSG."""
     try:
-        calls: tuple[Call, ...] = _machine().parse(source)
-    except StuckError:
-        raise _unexpected(source, tables.mistake(_grammar(), source.text)) from None
+        calls: tuple[Call, ...] = _parser().parse(source.text)  # type: ignore[assignment]
+    except UnexpectedInput as error:
+        raise _unexpected(source, error) from None
     except _WrongValueError as error:
-        raise _wrong_value(error.token) from None
+        raise _wrong_value(source, error.token) from None
     return calls
 
 
-def _wrong_value(token: Token) -> SceneError:
+def _wrong_value(source: Source, token: Token) -> SceneError:
+    span = Span(source, token.start_pos or 0, token.end_pos or 0)
     if token.type == "NAME":
-        return scene_error(f"`{token.text}` has no value here", token.span, FLATTEN)
-    return scene_error("this is no number, or too large a one", token.span, f"numbers go to {LARGEST:g}")
+        return scene_error(
+            f"`{token}` has no value here",
+            span,
+            FLATTEN,
+        )
+    return scene_error("this is no number, or too large a one", span, f"numbers go to {LARGEST:g}")
 
 
 def _unexpected(source: Source, error: UnexpectedInput) -> SceneError:
-    from lark.exceptions import UnexpectedCharacters, UnexpectedToken
-
     text = source.text
     match error:
-        case UnexpectedToken(token=token) if token.type == END:
+        case UnexpectedToken(token=Token(type="$END")):
             end = len(text.rstrip())
             return scene_error(
                 "the file ends in the middle of a statement",

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from sdfc.openscad.generators import Span3
 from sdfc.openscad.plane import Plane
-from sdfc.record import dataclass
 from sdfc.shape.graph import Shape
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import TypeAlias, TypeVar, assert_never
 
 from sdfc.openscad import outline
 from sdfc.openscad.outline import Point2
 from sdfc.openscad.refusal import RefusalError
-from sdfc.record import dataclass
 
 Map2: TypeAlias = tuple[tuple[float, float, float], tuple[float, float, float]]  # rows: linear part, offset
 T = TypeVar("T")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from sdfc.openscad.space import Point
-from sdfc.record import dataclass
 
 Integers: TypeAlias = tuple[int, int, int]
 Plane: TypeAlias = tuple[Point, float]  # unit normal n and offset d: inside where n . p <= d

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from sdfc.diagnostics import Source, Span
-from sdfc.record import dataclass
 
 Value: TypeAlias = "float | bool | str | tuple[Value, ...] | None"  # None is OpenSCAD's undef
 

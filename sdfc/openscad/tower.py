@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import assert_never
 
 from sdfc.diagnostics import Span
@@ -15,7 +16,6 @@ from sdfc.openscad.polytope import Plane as Plane3
 from sdfc.openscad.profile import profile
 from sdfc.openscad.refusal import RefusalError
 from sdfc.openscad.space import Point
-from sdfc.record import dataclass
 from sdfc.shape.graph import Shape
 
 MOST_PLANES = 12  # sides of a regular polygon that become planes; with more of them one is folded onto the others

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
-
-from sdfc.record import dataclass
 
 Point: TypeAlias = tuple[float, float]
 MOST_SIDES = 64  # a ray meets the planes one by one: with more of them the distance in the plane is no dearer

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from sdfc.field.graph import Expr, FieldGraph
-from sdfc.record import dataclass
 from sdfc.shape.graph import Affine
 from sdfc.shape.matrix import Linear, Matrix, Numbers, composed, scaling
 from sdfc.shape.stretch import is_similarity, scale_of, smallest_stretch

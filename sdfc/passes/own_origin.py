@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from sdfc.diagnostics import scene_error
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box, nothing
 from sdfc.facts.pointwise import is_pointwise
 from sdfc.field.graph import Expr, FieldGraph
-from sdfc.record import dataclass
 from sdfc.shape.graph import Affine, Apply, Shape, ShapeGraph, children_of
 from sdfc.shape.matrix import Matrix, identity, scaling, translation
 

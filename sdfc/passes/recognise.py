@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TypeAlias
 
@@ -12,7 +13,6 @@ from sdfc.field.graph import Expr, FieldGraph, Operand
 from sdfc.passes.convex import Point, convex_sides, span_of
 from sdfc.passes.rewrite import descend
 from sdfc.passes.turned import turned
-from sdfc.record import dataclass
 from sdfc.shape.definition import Argument, Definition
 from sdfc.shape.graph import (
     Affine,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import assert_never
 
 from sdfc.facts.cost import cost
@@ -28,7 +29,6 @@ from sdfc.plan.steps import (
     is_closed,
     leaves_of,
 )
-from sdfc.record import dataclass
 from sdfc.shape.definition import Kind
 from sdfc.shape.lower import Lowering, lower_ray
 from sdfc.tracers import TRACERS

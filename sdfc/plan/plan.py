@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from sdfc.plan.cluster import CLUSTER, rows_at_once, turns
 from sdfc.plan.steps import Any, Closed, Many, Step, is_closed, leaves_of
-from sdfc.record import dataclass
 from sdfc.shape.material import Material
 from sdfc.tracers.record import Choice, Tracer
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias, assert_never
 
 from sdfc.diagnostics import SceneError, scene_error
@@ -33,7 +33,6 @@ from sdfc.plan.steps import (
     Tangent,
     Within,
 )
-from sdfc.record import dataclass
 from sdfc.shape.graph import (
     Affine,
     Apply,

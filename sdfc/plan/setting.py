@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from sdfc.field.graph import Expr, FieldGraph, Op, topological
 from sdfc.passes.own_origin import Frame
-from sdfc.record import dataclass
 from sdfc.scene.model import Camera, Light, Param, Scene, Sky, Sun
 from sdfc.shade.defaults import SKY, key_sun
 from sdfc.shape.material import Material

@@ -8,13 +8,13 @@ an intersection the greatest; a ray hits where the tree answers t, and misses wh
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TypeAlias, assert_never
 
 from sdfc.diagnostics import Span
 from sdfc.facts.box import Box
 from sdfc.facts.exactness import exactness, is_no_distance
 from sdfc.field.graph import Expr
-from sdfc.record import dataclass
 from sdfc.shape.definition import Exactness
 from sdfc.shape.graph import Apply
 from sdfc.shape.material import Material

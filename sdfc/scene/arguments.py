@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 
 from sdfc.diagnostics import Diagnostic, SceneError, Span, scene_error
 from sdfc.field.graph import Expr
-from sdfc.record import dataclass
 from sdfc.scene import values
 from sdfc.scene.arithmetic import elements
 from sdfc.scene.bindings import did_you_mean

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from sdfc.diagnostics import Diagnostic, SceneError, Span, scene_error
 from sdfc.field.graph import Expr, FieldGraph, Type
-from sdfc.record import dataclass
 from sdfc.scene import functions
 from sdfc.scene.bindings import did_you_mean
 from sdfc.scene.formula import (

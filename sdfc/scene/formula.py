@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias, cast
 
 from sdfc.diagnostics import InternalError, Span, scene_error
 from sdfc.field.graph import Expr, FieldGraph, Type
-from sdfc.record import dataclass
 from sdfc.scene import functions
 from sdfc.scene.bindings import Bindings, did_you_mean
 from sdfc.scene.units import UNITS, unknown_unit

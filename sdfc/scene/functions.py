@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 
 from sdfc.diagnostics import SceneError, Span, scene_error
 from sdfc.field.graph import Expr, FieldGraph, Op, Type
-from sdfc.record import dataclass
 
 CONSTANTS: Mapping[str, float] = MappingProxyType({"pi": math.pi, "tau": math.tau, "inf": math.inf})
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from sdfc.diagnostics import SceneError, scene_error
-from sdfc.record import dataclass
 from sdfc.scene.files import Folder
 from sdfc.scene.limits import MOST_FILES
 from sdfc.scene.module import FileModule

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
 from typing import cast
@@ -11,7 +12,6 @@ from typing import cast
 from sdfc import packaged
 from sdfc.diagnostics import InternalError, Source, Span
 from sdfc.field.graph import Expr, FieldGraph
-from sdfc.record import dataclass
 from sdfc.scene.check import has_sizes, try_out
 from sdfc.scene.define import IN_PLANE, define, in_plane
 from sdfc.scene.formula import Helper, Outer

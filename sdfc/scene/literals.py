@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias
 
 from sdfc.field.graph import Expr, Type
-from sdfc.record import dataclass
 from sdfc.scene.model import Param
 from sdfc.scene.values import Unit
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from sdfc.diagnostics import Diagnostic, Source, Span
 from sdfc.field.graph import Expr, FieldGraph, Type
-from sdfc.record import dataclass
 from sdfc.shape.graph import Shape, ShapeGraph
 
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Protocol, TypeAlias
 
 from sdfc.diagnostics import Diagnostic, InternalError, SceneError, Span, scene_error
 from sdfc.field.graph import FieldGraph
-from sdfc.record import dataclass
 from sdfc.scene.bindings import Bindings, did_you_mean
 from sdfc.scene.functions import CONSTANTS
 from sdfc.scene.library import Library

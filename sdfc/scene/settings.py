@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 
 from sdfc.diagnostics import Diagnostic, SceneError, Span, scene_error
 from sdfc.field.graph import Expr, FieldGraph
-from sdfc.record import dataclass
 from sdfc.scene import values
 from sdfc.scene.arguments import Given, match
 from sdfc.scene.color import linear

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import Enum
 from typing import TypeAlias
 
 from sdfc.diagnostics import Source, Span, scene_error
 from sdfc.field.graph import Expr, Type
-from sdfc.record import dataclass
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union
 from sdfc.shape.material import Material
 

@@ -1,9 +1,8 @@
 """The light of a scene that names none: a warm sun over the viewer's left shoulder, and a soft sky. Plain numbers."""
 
 import math
+from dataclasses import dataclass
 from typing import TypeAlias
-
-from sdfc.record import dataclass
 
 Vector: TypeAlias = tuple[float, float, float]
 

@@ -6,10 +6,10 @@ surface is given back, after Kulla and Conty (2017). The integrals that these ne
 """
 
 import math
+from dataclasses import dataclass
 
 from sdfc.field.function import Function
 from sdfc.field.graph import Expr, FieldGraph, Type
-from sdfc.record import dataclass
 from sdfc.shade.vector import fifth_power, mix, normalize, polynomial, power, saturate, square
 
 ROUGHNESS_FLOOR = 0.09

@@ -6,14 +6,13 @@ Definitions come from `field` declarations, the standard library's and a user's 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
 from typing import TypeAlias
 
 from sdfc.diagnostics import Span
 from sdfc.field.graph import Expr
-from sdfc.record import dataclass
 
 Argument: TypeAlias = "Expr | tuple[Expr, ...]"  # a value, or a list of values (the corners of a polygon)
 Environment: TypeAlias = Mapping[str, Argument]

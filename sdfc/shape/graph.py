@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TypeAlias, TypeVar
 
 from sdfc.diagnostics import Span
-from sdfc.record import dataclass
 from sdfc.shape.definition import Argument, Definition
 from sdfc.shape.material import Material
 from sdfc.shape.matrix import Matrix

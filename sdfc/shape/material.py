@@ -1,8 +1,9 @@
 """A surface's look: the metallic-roughness model, in linear colour."""
 
+from dataclasses import dataclass
+
 from sdfc.diagnostics import Span
 from sdfc.field.graph import Expr
-from sdfc.record import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
 from sdfc.field.graph import Expr, FieldGraph, Op, Operand
-from sdfc.record import dataclass
 
 Row: TypeAlias = tuple[Expr, Expr, Expr]
 Linear: TypeAlias = tuple[Row, Row, Row]

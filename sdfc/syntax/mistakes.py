@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import difflib
 import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sdfc.diagnostics import Diagnostic, Source, Span
-from sdfc.record import dataclass
 
 if TYPE_CHECKING:
     from lark.exceptions import UnexpectedInput

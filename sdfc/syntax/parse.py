@@ -1,22 +1,25 @@
-"""Text to syntax tree. The grammar's tables are read with the first text; Lark says what is wrong with one."""
+"""Text to syntax tree. Lark is imported, and the grammar's tables are read, when the first text is parsed."""
 
 from __future__ import annotations
 
 import re
+import threading
 from functools import cache
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 from sdfc import packaged
 from sdfc.diagnostics import Diagnostic, SceneError, Source, Span, scene_error
-from sdfc.syntax import tables
 from sdfc.syntax.build import Builder
-from sdfc.syntax.machine import Machine, StuckError
 from sdfc.syntax.tree import File, Statement
+
+if TYPE_CHECKING:
+    from lark import Lark
 
 LARGEST_TEXT = 4 * 2**20  # characters
 MOST_WORDS = 600_000
 MOST_ERRORS = 10
 
+_lock = threading.Lock()  # the builder holds the text at hand
 _word = re.compile(r"[A-Za-z_0-9.]+|[^\sA-Za-z_0-9.]")
 _statement = re.compile(r"^(?:import|param|material|camera|light|sky|def|field|scene)\b", re.MULTILINE)
 
@@ -41,12 +44,18 @@ def parse(source: Source) -> File:
 
 def parse_part(source: Source, start: int, end: int) -> tuple[Statement, ...]:
     """The statements in part of a text; their places are in the whole. Raises SceneError at the first syntax error."""
-    try:
-        return cast("tuple[Statement, ...]", _machine().parse(source, start, end))
-    except StuckError:
-        from sdfc.syntax.mistakes import explain
+    from lark.exceptions import UnexpectedInput
 
-        raise SceneError(explain(source, start, end, tables.mistake(_grammar(), source.text[start:end]))) from None
+    part = source.text[start:end]
+    with _lock:
+        parser, builder = _parser()
+        builder.begin(source, start)
+        try:
+            return cast("tuple[Statement, ...]", parser.parse(part))
+        except UnexpectedInput as error:
+            from sdfc.syntax.mistakes import explain
+
+            raise SceneError(explain(source, start, end, error)) from None
 
 
 def _next_statement(source: Source, problem: Diagnostic) -> int | None:
@@ -75,9 +84,8 @@ def _check_text(source: Source) -> None:
 
 
 @cache
-def _machine() -> Machine:
-    return tables.load(_grammar(), Builder())
+def _parser() -> tuple[Lark, Builder]:
+    from sdfc.syntax.tables import load
 
-
-def _grammar() -> str:
-    return (packaged.folder("sdfc.grammar") / "scene.lark").read_text(encoding="utf-8")
+    builder = Builder()
+    return load((packaged.folder("sdfc.grammar") / "scene.lark").read_text(encoding="utf-8"), builder), builder

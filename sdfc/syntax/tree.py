@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from sdfc.diagnostics import Source, Span
-from sdfc.record import dataclass
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
-from sdfc.record import dataclass
 from sdfc.syntax import tree
 
 _PLACES = ("span", "operator_span")  # what a node has beside its parts

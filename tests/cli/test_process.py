@@ -55,8 +55,8 @@ def test_emitting_opens_no_device(scene: Path) -> None:
 @pytest.mark.parametrize(
     ("verb", "unwanted"),
     [
-        (("emit-glsl",), {"numpy", "moderngl", "lark", "PIL", "sdfc.api.renderer", "sdfc.syntax.mistakes"}),
-        (("check",), {"numpy", "moderngl", "lark", "jinja2", "sdfc.api.renderer", "sdfc.glsl", "importlib.resources"}),
+        (("emit-glsl",), {"numpy", "moderngl", "PIL", "sdfc.api.renderer", "sdfc.syntax.mistakes"}),
+        (("check",), {"numpy", "moderngl", "jinja2", "sdfc.api.renderer", "sdfc.glsl", "importlib.resources"}),
     ],
 )
 def test_a_verb_imports_nothing_heavy_that_it_does_not_need(scene: Path, verb: tuple[str], unwanted: set[str]) -> None:

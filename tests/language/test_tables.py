@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from sdfc.diagnostics import InternalError, Source
 from sdfc.syntax import tables
 
 GRAMMAR = 'start: "a" word*\nword: "b"\n%ignore " "'
@@ -21,11 +20,11 @@ class Callbacks:
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    return tmp_path / "sdfc" / tables.KIND
+    return tmp_path / "sdfc"
 
 
 def parsed() -> object:
-    return tables.load(GRAMMAR, Callbacks()).parse(Source("", "a b b"))
+    return tables.load(GRAMMAR, Callbacks()).parse("a b b")
 
 
 def test_tables_are_kept_and_read_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -36,7 +35,7 @@ def test_tables_are_kept_and_read_again(folder: Path, monkeypatch: pytest.Monkey
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("the grammar was compiled again")
 
-    monkeypatch.setattr(tables, "_lark", refuse)
+    monkeypatch.setattr(tables, "_keep", refuse)
     assert parsed() == ("start", 2)
     assert kept.read_bytes() == before
 
@@ -68,9 +67,3 @@ def test_a_scene_needs_no_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.delenv("HOME", raising=False)
     monkeypatch.setattr(Path, "home", lambda: (_ for _ in ()).throw(RuntimeError("no home")))
     assert parsed() == ("start", 2)
-
-
-def test_there_is_no_mistake_in_what_lark_reads() -> None:
-    assert tables.mistake(GRAMMAR, "a c").pos_in_stream == 2
-    with pytest.raises(InternalError):
-        tables.mistake(GRAMMAR, "a b b")

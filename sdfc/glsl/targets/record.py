@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from sdfc.glsl.source import Item
-from sdfc.record import dataclass
 
 Part: TypeAlias = Literal["field", "tracer", "full"]
 PARTS: tuple[Part, ...] = ("field", "tracer", "full")
