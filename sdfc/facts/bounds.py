@@ -40,12 +40,12 @@ class Bounds:
             if asking in boxes:
                 continue
             children, below = self._asked(node, at)
-            missing = [(child, below) for child in children if (child, below) not in boxes]
-            if missing:
-                stack.append(asking)
-                stack += missing
+            known = [box for child in children if (box := boxes.get((child, below))) is not None]
+            if len(known) == len(children):
+                boxes[asking] = _usable(self._box(node, at, known))
             else:
-                boxes[asking] = _usable(self._box(node, at, [boxes[child, below] for child in children]))
+                stack.append(asking)
+                stack += [(child, below) for child in children]
         return boxes[shape, level]
 
     def moved(self, matrix: Matrix, box: Box) -> Box:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from sdfc.field.graph import Expr
@@ -30,13 +31,18 @@ def _varying(whole: Range) -> int:
     return sum(a != b for a, b in zip(*whole, strict=True))
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True)
 class Ranges:
     """The range of each param, by component. For the expressions of one graph."""
 
     of: Mapping[str, Range]
     _found: dict[int, tuple[list[float], list[float]]] = field(default_factory=dict, repr=False, compare=False)
-    _bounds: ConstantBounds | None = field(default=None, repr=False, compare=False)
+
+    @cached_property
+    def _bounds(self) -> ConstantBounds:
+        from sdfc.field.interval import ConstantBounds
+
+        return ConstantBounds(self.of)
 
     def pieces(self, names: Collection[str]) -> list[Mapping[str, Range]]:
         """The ranges of the params named, cut into at most _PIECES boxes that cover them; no vector is cut."""
@@ -71,10 +77,6 @@ class Ranges:
         return lo, hi
 
     def _live(self, value: Expr) -> tuple[list[float], list[float]]:
-        if self._bounds is None:
-            from sdfc.field.interval import ConstantBounds
-
-            self._bounds = ConstantBounds(self.of)
         lo, hi = self._bounds(value)
         size = value.type.size  # a vector's may still be a scalar's
         return (lo.tolist() * size)[:size], (hi.tolist() * size)[:size]

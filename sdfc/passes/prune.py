@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box
@@ -27,9 +27,8 @@ _TOUCH = 1e-9  # of a box's radius: what rounding leaves between faces that coin
 _DEEPEST = 4  # blends in blends: each asks for the boxes of all below it at a level of its own
 
 
-@dataclass(frozen=True, slots=True)
-class _Reach:
-    """Up to which level a shape's values matter, and in how many blends it is."""
+class _Reach(NamedTuple):
+    """Up to which level a shape's values matter, and in how many blends it is. It is looked up with every shape."""
 
     level: float
     blends: int

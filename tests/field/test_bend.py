@@ -12,11 +12,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from sdfc.field.bend import BendEvaluator, _Search, bend_bounds
+from sdfc.field.bend import BendEvaluator, _Cells, bend_bounds
 from sdfc.field.core import is_positive, signed_core
 from sdfc.field.graph import LEAVES, Expr, FieldGraph, Op, Type, inputs_of, params_of, substitute
 from sdfc.field.interval_bends import BENDS
 from sdfc.field.interval_rules import Interval
+from sdfc.field.memory import MEMORY
 from sdfc.field.numeric import Evaluator
 
 Array = NDArray[np.float64]
@@ -172,6 +173,7 @@ def test_what_is_infinite_at_a_hub_is_given_up_at_once(monkeypatch: pytest.Monke
         return evaluate(self, *given)
 
     monkeypatch.setattr(BendEvaluator, "__call__", counted)
+    MEMORY.forget()
     assert bend_bounds(ring, [-1.0, -0.2, -1.0], [1.0, 0.2, 1.0], [{}, {}], {}) == [math.inf, math.inf]
     assert looks == [2, 16]
 
@@ -191,5 +193,6 @@ def test_what_is_given_up_has_no_bound(tree: Recipe, size: float) -> None:
     given = root, [-size] * 3, [size] * 3, [piece], {}
     (bend,) = bend_bounds(*given, boxes=128)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(_Search, "is_vain", lambda self: False)
+        MEMORY.forget()
+        patch.setattr(_Cells, "is_vain", lambda self: False)
         assert bend_bounds(*given, boxes=128) == [bend]
