@@ -136,8 +136,10 @@ def test_another_scene_at_the_same_address_is_seen_as_its_text_says(actor: Actor
     before = picture(tab)
     tab.key("ArrowLeft")
     tab.run("document.querySelector('#param-size-0').focus()")
+    turned = another(tab, before)
     tab.key("ArrowRight")
-    moved = another(tab, before)
+    tab.until("document.querySelector('#reset-all').matches(':not(.unused)')")
+    moved = another(tab, turned)
     actor.say({**actor.scene, "id": 2})
     tab.until("document.querySelector('#reset-all').matches(':not(.unused)')")
     assert share_of_others(picture(tab), moved) == 0
