@@ -14,8 +14,8 @@ from typing import Any
 def folder() -> Path:
     """SDFC_CACHE_DIR, else the platform's folder for caches, else (a user without a home) a temporary one."""
     given = os.environ.get("SDFC_CACHE_DIR", "")
-    if os.path.isabs(given):
-        return Path(given)
+    if given:
+        return Path(given).absolute()
     try:
         home = Path.home()
     except RuntimeError:  # a daemon's, a container's user
@@ -46,7 +46,7 @@ def recall_bytes(kind: str, key: str) -> bytes | None:
     """What was remembered of a key, or None; what cannot be read was never there, nor was what another user wrote."""
     with contextlib.suppress(OSError), _path(kind, key).open("rb") as file:
         if sys.platform == "win32" or os.fstat(file.fileno()).st_uid == os.getuid():
-            return file.read()
+            return _whole(file.read())
     return None
 
 
@@ -57,9 +57,22 @@ def remember_bytes(kind: str, key: str, value: bytes) -> None:
     path = _path(kind, key)
     with contextlib.suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        with NamedTemporaryFile(dir=path.parent, delete=False) as file:
-            file.write(value)
-        os.replace(file.name, path)
+        with NamedTemporaryFile(dir=path.parent, delete=False) as file, contextlib.ExitStack() as left:
+            left.callback(os.unlink, file.name)  # where the disk is full
+            file.write(_digest(value) + value)
+            file.close()
+            os.replace(file.name, path)
+            left.pop_all()
+
+
+def _digest(value: bytes) -> bytes:
+    return hashlib.sha256(value).digest()
+
+
+def _whole(kept: bytes) -> bytes | None:
+    """What was written, or None: bytecode that is damaged ends the process, or makes other GLSL."""
+    size = len(_digest(b""))
+    return kept[size:] if _digest(kept[size:]) == kept[:size] else None
 
 
 def _path(kind: str, key: str) -> Path:

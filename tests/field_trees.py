@@ -50,7 +50,9 @@ class PlainGraph(FieldGraph):
     """A graph that neither simplifies nor folds: what the simplified one is compared with."""
 
     def add(self, op: Op, *args: Expr, value: Value = None) -> Expr:
-        return self._intern(op, _result_type(op, args, value), args, value)
+        return self._made.get((op, args, value)) or self._made.setdefault(
+            (op, args, value), self._new(op, _result_type(op, args, value), args, value)
+        )
 
 
 def number(x: float) -> Recipe:

@@ -33,6 +33,8 @@ def emitted(
 ) -> str:
     """One file for `target`. RequestError, with the reason, where the target cannot be had so."""
     order = ordered(program, target, stage, part, prefix, bake, params)
+    if part == "field" and tracer != AUTO:
+        raise RequestError("a field is not traced: a tracer goes with the parts 'tracer' and 'full'")
     return _made(program, order, checked_tracer(tracer))
 
 

@@ -112,5 +112,5 @@ def check_pattern(output: Path) -> None:
         stem = re.sub(r"[_.-]?%[^_.-]*", "", output.stem) or "out"
         example = f"{stem}_%04d{output.suffix or '.png'}"
         raise RequestError(
-            f"'{output}' does not say where a frame's number goes: write it as in {example} (or one film: {films})"
+            f"'{output}' does not say once where a frame's number goes: write it as in {example} (or one film: {films})"
         )

@@ -58,8 +58,10 @@ def command(scene: Path, scene_format: str | None, output: Path | None, as_json:
         ((stage, text),) = files.values()
         options.say(text.removesuffix("\n"), {**told, "stage": stage, "text": text}, as_json)
         return
-    from sdfc.image.write import write_all
+    from sdfc.image.write import check_no_source, write_all
 
+    sources = [program.scene.source.name, *program.scene.files]
+    check_no_source([path for path in files if path is not None], sources)
     write_all({path: text.encode() for path, (_, text) in files.items() if path is not None})
     if as_json:
         stages = [stage for stage, _ in files.values()]

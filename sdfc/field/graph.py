@@ -145,10 +145,6 @@ class FieldGraph:
         key = op, type_, name
         return self._leaves.get(key) or self._leaves.setdefault(key, self._new(op, type_, (), name))
 
-    def _intern(self, op: Op, type_: Type, args: tuple[Expr, ...], value: Value) -> Expr:
-        key = op, args, value
-        return self._made.get(key) or self._made.setdefault(key, self._new(op, type_, args, value))
-
     def constant(self, *components: Number) -> Expr:
         return self._constant(_OF_SIZE[len(components)], components)
 

@@ -152,7 +152,7 @@ class Assembly:
             "lift": literal(LIFT),
             "most_steps": self._most_steps(),
             "needs_marching": trace.march or (tracer.needs_map and not self._is_cone) or bool(many.tables),
-            "needs_map_library": "within(" in map_text or "box_distance" in map_text,
+            "needs_map_library": "within" in map_text or "box_distance" in map_text,
             "map": map_text,
             "occluder": occluder,
             "map_span": span_text,
@@ -180,7 +180,9 @@ class Assembly:
         texts: dict[str, str] = {}
 
         def write(root: Step, name: str, traced: bool) -> None:
-            writer = DistanceWriter(self._graph, self._functions, self._live, plan.slopes, many, traced)
+            writer = DistanceWriter(
+                self._graph, self._functions, self._live, plan.slopes, many, traced, self._has_field
+            )
             texts[name] = writer.write(root, name)
 
         if plan.tracer.needs_map or self._is_cone or self._has_field:

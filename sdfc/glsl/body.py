@@ -15,6 +15,7 @@ from sdfc.shape.matrix import Matrix
 
 _COMPONENTS = re.compile(r"\w+\.[xyzw]+")
 _WORD = re.compile(r"\w+")
+_DECLARED = re.compile(r"\w+ \w+(?= = )")
 _ARGUMENT = [(before, after) for before in ("(", ", ") for after in (",", ")")]  # what stands beside one
 _LONGEST = 112  # characters of a line that a point is written in: the scene's name before those of functions makes 120
 
@@ -84,8 +85,11 @@ class Body:
 
     def once(self, line: str, span: Span | None = None) -> None:
         """Adds a statement unless it is there: a part that has several places in the tree has its values once."""
-        if line not in self._once:
-            self._once.add(line)
+        # by what it declares: at the second place its text may read another local of the same value
+        declared = _DECLARED.match(line)
+        what = line if declared is None else declared[0]
+        if what not in self._once:
+            self._once.add(what)
             self.add(line, span)
 
     def declare(self, type_: Type, name: str, text: str, span: Span | None = None) -> None:

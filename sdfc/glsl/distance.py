@@ -13,6 +13,8 @@ from sdfc.glsl.live import Live
 from sdfc.glsl.many import ManyWriter
 from sdfc.plan.steps import Many, Part, Step, Within, may_flatten
 
+_ROUNDING = 2.0**-26  # of a box's size: float32 knows no smaller part of it
+
 
 class DistanceWriter:
     """Writes one scene's distance, as a chain of statements, one a part.
@@ -29,12 +31,14 @@ class DistanceWriter:
         slopes: dict[int, float],
         many: ManyWriter,
         traced: bool,
+        is_steady: bool = False,
     ) -> None:
         self._graph = graph
         self._functions = functions
         self._live = live
         self._many = many
         self._traced = traced
+        self._within_box = "within_steadily" if is_steady else "within"  # others march it: no jumps
         self._slopes = slopes  # the Lipschitz constant of each part's formula, by id
 
     def write(self, root: Step, name: str = "map") -> str:
@@ -50,7 +54,7 @@ class DistanceWriter:
         q = body.point(own_point(part.inverse, self._graph.input("p")), f"q_{part.name}")
         text = body.call(self._functions.of_part(part, Role.VALUE), [q])
         scale = part.stretch * (1.0 / max(self._slopes[id(part)], 1e-9))
-        if not (scale.is_constant and scale.number == 1.0):
+        if not (scale.is_constant and literal(scale.number) == "1.0"):
             text = f"{body.text(scale)} * {text}"
         return text if inside else f"-{text}" if "*" not in text else f"-({text})"
 
@@ -68,10 +72,11 @@ class DistanceWriter:
             return f"max({inner}, box_distance({_place(step)}))" if is_bounded else inner
         margin = literal(1e-3 * step.box.radius)
         outside = "box_distance" if self._traced else "far_outside"
-        return f"within({outside}({_place(step)}), {inner}, {margin})"
+        return f"{self._within_box}({outside}({_place(step)}), {inner}, {margin})"
 
 
 def _place(step: Within) -> str:
-    centre = ", ".join(literal(c) for c in step.box.centre)
-    half = ", ".join(literal(h) for h in step.box.half)
-    return f"p - vec3({centre}), vec3({half})"
+    half = step.box.half
+    centre = [c if abs(c) > _ROUNDING * max(half) else 0.0 for c in step.box.centre]
+    point = f"p - vec3({', '.join(map(literal, centre))})" if any(centre) else "p"
+    return f"{point}, vec3({', '.join(map(literal, half))})"

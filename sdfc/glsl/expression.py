@@ -386,3 +386,6 @@ _LOCAL_NAMES: dict[Op, str] = {
     Op.NOT: "outside",
     Op.SELECT: "chosen",
 }
+
+# what locals are called, but for a number behind it: no function may be called so, a local would hide it
+LOCAL_WORDS = frozenset({"q", *_LOCAL_NAMES.values()})

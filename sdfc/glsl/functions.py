@@ -13,23 +13,13 @@ from sdfc.field.derivative import directional, gradient
 from sdfc.field.function import Function
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.field.span import span
-from sdfc.glsl.expression import Printed, printed
+from sdfc.glsl.expression import LOCAL_WORDS, Printed, printed
 from sdfc.glsl.names import LOCALS, Names, param_name
 from sdfc.plan.steps import Part
-from sdfc.shape.definition import Argument, Definition, Kind
+from sdfc.shape.definition import FORMAL, Argument, Definition, Kind
 from sdfc.shape.graph import Apply
 from sdfc.shape.look import Looks
-from sdfc.shape.lower import FAR, Lowering, lower_gauge
-
-_TYPES = {
-    Kind.NUMBER: Type.FLOAT,
-    Kind.LENGTH: Type.FLOAT,
-    Kind.ANGLE: Type.FLOAT,
-    Kind.VECTOR2: Type.VEC2,
-    Kind.POINT2: Type.VEC2,
-    Kind.VECTOR3: Type.VEC3,
-    Kind.POINT3: Type.VEC3,
-}
+from sdfc.shape.lower import FAR, Lowering, generic, lower_gauge
 
 _Formal: TypeAlias = tuple[tuple[str, Type], ...]
 _POINT: _Formal = (("p", Type.VEC3),)
@@ -110,7 +100,7 @@ class Functions:
             return Call(self._by_key[key].name, ())
         key = id(definition), role
         if key not in self._by_key:
-            made = self._printed(definition, role, lambda: self._made(self._general(shape), role, formal))
+            made = self._printed(definition, role, lambda: self._made(generic(shape, self._graph), role, formal))
             self._by_key[key] = GlslFunction(self._fresh(definition.name + role.value), _doc(definition, role), made)
         return Call(self._by_key[key].name, _numbers(shape))
 
@@ -127,8 +117,8 @@ class Functions:
         key = id(definition)
         if key not in self._formals:
             values = definition.values
-            is_shared = definition.is_primitive and all(p.kind in _TYPES for p in values)
-            self._formals[key] = tuple((p.name, _TYPES[p.kind]) for p in values) if is_shared else None
+            is_shared = definition.is_primitive and all(p.kind in FORMAL for p in values)
+            self._formals[key] = tuple((p.name, FORMAL[p.kind]) for p in values) if is_shared else None
         return self._formals[key]
 
     def _printed(self, definition: Definition, role: Role, make: Callable[[], Function]) -> Printed:
@@ -158,26 +148,16 @@ class Functions:
             one = self._graph.constant(1.0)
             slopes = [directional(result, {a: one}), directional(result, {b: one})]
             result = self._graph.vector(*slopes, result)
-        formal = (("a", Type.FLOAT), ("b", Type.FLOAT), *((p.name, _TYPES[p.kind]) for p in definition.values))
+        formal = (("a", Type.FLOAT), ("b", Type.FLOAT), *((p.name, FORMAL[p.kind]) for p in definition.values))
         return Function(definition.name + role.value, formal, result)
 
     def _fresh(self, wanted: str) -> str:
-        """A name for a function: never one like those that generated variables have (box_1, s2)."""
-        return self.names.fresh(f"{wanted}_field" if re.search(r"_\d+$|^s\d+$", wanted) else wanted)
+        """A name for a function: never one like those that generated variables have (box_1, s2, ratio)."""
+        is_like_local = wanted in LOCAL_WORDS or re.search(r"_\d+$|^s\d+$", wanted)
+        return self.names.fresh(f"{wanted}_field" if is_like_local else wanted)
 
     def _input(self, name: str, kind: Kind) -> Expr:
-        return self._graph.input(name, _TYPES[kind])
-
-    def _general(self, shape: Apply) -> Apply:
-        """The shape with its definition's parameters for arguments: no node of the scene, only its formula is read."""
-        return Apply(
-            id=-1 - shape.id,
-            span=shape.span,
-            dimension=shape.dimension,
-            definition=shape.definition,
-            arguments=tuple(self._input(p.name, p.kind) for p in shape.definition.values),
-            children=shape.children,
-        )
+        return self._graph.input(name, FORMAL[kind])
 
     def _made(self, shape: Apply, role: Role, formal: _Formal) -> Function:
         result, leading = self._meaning(shape, role)

@@ -19,10 +19,10 @@ def header(brief: Brief, target: Target) -> list[str]:
 
 def _provided(brief: Brief, target: Target) -> list[str]:
     p = brief.prefix
-    numbered = ", ".join(f"{i} {name}" for i, name in enumerate(brief.materials))
+    numbered = ", ".join(f"{i} {name or '(no name)'}" for i, name in enumerate(brief.materials))
     functions = [
         (f"float {p}_sdf(vec3 p)", "at most the distance to the surface, below 0 inside"),
-        (f"vec3 {p}_gradient(vec3 p)", "its gradient: the normal, on the surface"),
+        (f"vec3 {p}_gradient(vec3 p)", "its gradient: along the normal near the surface"),
         (f"int {p}_material(vec3 p)", numbered),
         (f"{p}_Properties {p}_properties(vec3 p)", "color (linear), metallic, roughness, emission, ..."),
     ]

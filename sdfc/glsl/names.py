@@ -59,6 +59,7 @@ pixel_centre point_falloff position_out prepare properties radiance radiance_out
 reflect_light rounding scene_from_clip sdf shown sky sky_radiance slab_interval span_complement span_hull
 span_intersection span_union span_within start_out start_state steps sun_disc sunk_parabola surface tangent tile_ray
 tolerance tone_map trace trace_pixel trace_ray transmit travelled turned unfinished weight_row window within
+within_steadily
 """
 
 # Locals of templates and of generated statements: no function and no local of an expression may take these.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 
@@ -24,6 +24,14 @@ def check_writable(path: Path) -> None:
     special = path.exists() and not path.is_file()
     if not os.access(path if special else folder, os.W_OK):
         raise OutputError(f"cannot write '{path}': permission denied")
+
+
+def check_no_source(paths: Iterable[Path], sources: Iterable[str]) -> None:
+    """Raise OutputError for a file that a scene was read from: a mistyped name must not cost a scene."""
+    read = [Path(source) for source in sources if Path(source).exists()]
+    for path in paths:
+        if path.exists() and any(map(path.samefile, read)):
+            raise OutputError(f"cannot write '{path}': the scene was read from it")
 
 
 def write_all(files: Mapping[Path, bytes]) -> None:

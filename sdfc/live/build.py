@@ -20,6 +20,7 @@ from sdfc.scene.literals import NO_LITERALS, LiveLiteral
 from sdfc.scene.model import Scene
 
 ENTRY = "radiance"
+_BEGINS = frozenset(("param", "def", "field", "material", "camera", "light", "sky", "scene", "import", "in"))
 _MOST_GROWTH = 1.5  # times as much GLSL is too much for one live number: a loop over a table came undone
 _COMMENT = re.compile(r"\s*//[^\n]*")
 
@@ -156,7 +157,11 @@ def _declared(snapshot: Snapshot, scene: Scene) -> dict[Key, LiveLiteral]:
         for index, literal in enumerate(text.literals):
             word = literal.word
             before, behind = text.words[max(0, word - 3) : word], text.words[word + 1 : word + 2]
-            param = params.get(before[1]) if before[::2] == ("param", "=") and behind == ("in",) else None
-            if param is not None and param.low is not None and param.high is not None:
+            param = params.get(before[1]) if before[::2] == ("param", "=") else None
+            if param is None:
+                continue
+            if literal.unit == "color" == param.unit and (not behind or behind[0] in _BEGINS):
+                found[name, index] = LiveLiteral(param.name, 0.0, 1.0)
+            elif behind == ("in",) and param.low is not None and param.high is not None:
                 found[name, index] = LiveLiteral(param.name, param.low, param.high)
     return found

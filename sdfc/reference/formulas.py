@@ -15,7 +15,7 @@ from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.field.numeric import Evaluator
 from sdfc.field.span import span
 from sdfc.plan.steps import Part
-from sdfc.shape.definition import Environment, Kind
+from sdfc.shape.definition import FORMAL, Environment
 from sdfc.shape.graph import Apply
 from sdfc.shape.look import Looks
 from sdfc.shape.lower import FAR, Lowering
@@ -35,17 +35,6 @@ PROPERTIES = {
     "tint": slice(10, 13),
 }
 """The rows of a stack of material properties, (13, n)."""
-
-_TYPES = {
-    Kind.NUMBER: Type.FLOAT,
-    Kind.LENGTH: Type.FLOAT,
-    Kind.ANGLE: Type.FLOAT,
-    Kind.VECTOR2: Type.VEC2,
-    Kind.POINT2: Type.VEC2,
-    Kind.VECTOR3: Type.VEC3,
-    Kind.POINT3: Type.VEC3,
-}
-"""The kinds of parameters whose values a formula may be shared over."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,11 +251,11 @@ class Formulas:
     def _made(self, part: Part) -> _Own:
         definition, graph = part.shape.definition, self._graph
         owner, environment, arguments = id(part), dict(part.shape.environment), {}
-        if definition.is_primitive and all(p.kind in _TYPES for p in definition.values):
+        if definition.is_primitive and all(p.kind in FORMAL for p in definition.values):
             owner = id(definition)
             given = {name: self.constant(a) for name, a in environment.items() if isinstance(a, Expr)}
             arguments = {f"its {name}": value for name, value in given.items()}
-            environment = {p.name: graph.param(f"its {p.name}", _TYPES[p.kind]) for p in definition.values}
+            environment = {p.name: graph.param(f"its {p.name}", FORMAL[p.kind]) for p in definition.values}
         linear, offset = None, np.zeros((3, 1))
         if part.inverse is not None:
             linear, offset = self._numbers(part.inverse)

@@ -24,6 +24,7 @@ from sdfc.scene.formula import (
     scalar,
 )
 from sdfc.shape.definition import (
+    FORMAL,
     Argument,
     ChildFacts,
     Claims,
@@ -273,17 +274,7 @@ def _intervals(value: Value, span: Span) -> tuple[Interval, ...]:
     return tuple(intervals)
 
 
-_TYPES = {
-    Kind.NUMBER: Type.FLOAT,
-    Kind.LENGTH: Type.FLOAT,
-    Kind.ANGLE: Type.FLOAT,
-    Kind.COUNT: Type.FLOAT,
-    Kind.BOOLEAN: Type.BOOL,
-    Kind.VECTOR2: Type.VEC2,
-    Kind.VECTOR3: Type.VEC3,
-    Kind.POINT2: Type.VEC2,
-    Kind.POINT3: Type.VEC3,
-}
+_TYPES = {**FORMAL, Kind.COUNT: Type.FLOAT, Kind.BOOLEAN: Type.BOOL}
 _ELEMENTS = {Kind.NUMBERS: Type.FLOAT, Kind.POINTS2: Type.VEC2, Kind.POINTS3: Type.VEC3}
 
 

@@ -9,10 +9,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
+from types import MappingProxyType
 from typing import TypeAlias
 
 from sdfc.diagnostics import Span
-from sdfc.field.graph import Expr
+from sdfc.field.graph import Expr, Type
 
 Argument: TypeAlias = "Expr | tuple[Expr, ...]"  # a value, or a list of values (the corners of a polygon)
 Environment: TypeAlias = Mapping[str, Argument]
@@ -58,6 +59,20 @@ class Exactness(Enum):
     EXACT_INSIDE = "exact inside"
     BOUND = "bound"
     NONE = "none"  # not a bound until divided by its Lipschitz constant
+
+
+FORMAL: Mapping[Kind, Type] = MappingProxyType(
+    {
+        Kind.NUMBER: Type.FLOAT,
+        Kind.LENGTH: Type.FLOAT,
+        Kind.ANGLE: Type.FLOAT,
+        Kind.VECTOR2: Type.VEC2,
+        Kind.POINT2: Type.VEC2,
+        Kind.VECTOR3: Type.VEC3,
+        Kind.POINT3: Type.VEC3,
+    }
+)
+"""What a parameter is as one of a function, of the kinds whose values a formula may be shared over."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,28 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
-from types import MappingProxyType
 from typing import assert_never
 
-from sdfc.field.graph import Expr, FieldGraph, Type
-from sdfc.shape.definition import Kind
+from sdfc.field.graph import Expr, FieldGraph
+from sdfc.shape.definition import FORMAL
 from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union
 from sdfc.shape.stretch import smallest_stretch
 
-# what a parameter is as one of a function
-FORMAL: Mapping[Kind, Type] = MappingProxyType(
-    {
-        Kind.NUMBER: Type.FLOAT,
-        Kind.LENGTH: Type.FLOAT,
-        Kind.ANGLE: Type.FLOAT,
-        Kind.VECTOR2: Type.VEC2,
-        Kind.POINT2: Type.VEC2,
-        Kind.VECTOR3: Type.VEC3,
-        Kind.POINT3: Type.VEC3,
-    }
-)
 FAR = 1e9  # the value of the empty solid: its square is finite in float32 (ALGORITHMS D3)
 
 

@@ -185,6 +185,8 @@ def _slip_of_character(place: _Place) -> _Slip | None:
     if place.terminal:
         return None
     hint = _CHARACTERS.get(place.found)
+    if hint is None and place.found.isalpha():
+        hint = "names are made of the letters a to z and A to Z, digits and _"
     if place.found.isprintable() and place.found:
         return f"unexpected character '{place.found}'", hint or None
     return f"unexpected character U+{ord(place.found or ' '):04X}", None

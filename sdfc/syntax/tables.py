@@ -2,48 +2,38 @@
 
 from __future__ import annotations
 
-import contextlib
-import hashlib
-import os
+import io
 import pickle
 import sys
-import tempfile
-from pathlib import Path
 
 from lark import Lark, __version__
 
-from sdfc.cache import folder
+from sdfc.cache import recall_bytes, remember_bytes
+
+KIND = "grammars"
 
 
 def load(grammar: str, callbacks: object) -> Lark:
     """An LALR parser of `grammar` that calls `callbacks` (methods named as its rules) as it reduces."""
-    path = _place(grammar)
-    kept = _kept(path, callbacks)
+    key = "\0".join([grammar, __version__, sys.version])
+    kept = _kept(key, callbacks)
     if kept is not None:
         return kept
     made = Lark(grammar, parser="lalr", transformer=callbacks)
-    _keep(made, path)
+    _keep(made, key)
     return made
 
 
-def _place(grammar: str) -> Path:
-    key = "\0".join([grammar, __version__, sys.version]).encode()
-    return folder() / f"grammar-{hashlib.sha256(key).hexdigest()[:32]}.tables"
-
-
-def _kept(path: Path, callbacks: object) -> Lark | None:
+def _kept(key: str, callbacks: object) -> Lark | None:
+    tables = recall_bytes(KIND, key)
     try:
-        with path.open("rb") as file:
-            # what Lark.load does, which has no way to give the callbacks
-            return Lark.__new__(Lark)._load(pickle.load(file), transformer=callbacks)
-    except Exception:  # damaged in any way: a pickle raises anything. It is made and written again
+        # what Lark.load does, which has no way to give the callbacks
+        return None if tables is None else Lark.__new__(Lark)._load(pickle.loads(tables), transformer=callbacks)
+    except Exception:  # another sdfc's: a pickle raises anything. It is made and written again
         return None
 
 
-def _keep(parser: Lark, path: Path) -> None:
-    """Written aside, then renamed: another process never sees half a file. Where nothing can be written, nothing is."""
-    with contextlib.suppress(OSError):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-            parser.save(file)
-        os.replace(file.name, path)
+def _keep(parser: Lark, key: str) -> None:
+    tables = io.BytesIO()
+    parser.save(tables)
+    remember_bytes(KIND, key, tables.getvalue())

@@ -44,6 +44,7 @@ def test_a_pair_of_stages_is_two_files(run: Run, tmp_path: Path) -> None:
         (("--target", "raster", "--part", "tracer"), "target 'raster' has no part 'tracer': it is a pair of stages"),
         (("--prefix", "2d"), "'2d' cannot begin names in GLSL"),
         (("--set", "radius=0.2"), "--set needs --bake"),
+        (("--part", "field", "--tracer", "sphere"), "a field is not traced"),
         (("--bake", "--set", "radius=7"), "param 'radius' = 7 is outside its range"),
     ],
 )
@@ -53,3 +54,17 @@ def test_refusals_are_one_line_and_exit_2(run: Run, arguments: tuple[str, ...], 
     assert words in result.stderr
     assert result.stderr.startswith("error: ") and result.stderr.count("\n") == 1
     assert result.stdout == ""
+
+
+@pytest.mark.parametrize("source", ["t.sdf", "rows.csv", "./part.sdf"])
+def test_what_the_scene_is_read_from_is_not_overwritten(run: Run, tmp_path: Path, source: str) -> None:
+    (tmp_path / "rows.csv").write_text("x\n1\n2\n")
+    (tmp_path / "part.sdf").write_text("def ball() = sphere(radius: 0.4)\n")
+    text = 'import "part.sdf"\nscene { instances("rows.csv", ball().translate([row.x, 0, 0])) }\n'
+    (tmp_path / "t.sdf").write_text(text)
+    before = (tmp_path / source).read_bytes()
+    result = run("emit-glsl", "t.sdf", "--part", "field", "-o", source)
+    assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
+    assert "the scene was read from it" in result.stderr
+    assert (tmp_path / source).read_bytes() == before
+    assert run("emit-glsl", "t.sdf", "--part", "field", "-o", "other.glsl").exit_code == 0

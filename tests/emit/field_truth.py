@@ -68,7 +68,8 @@ class FieldTruth:
             case Within():
                 value, box = self._fold(step.step, p), _box(step, p)
                 if step.is_needed:
-                    return np.where(box > 1e-3 * step.box.radius, box, value)
+                    margin = 1e-3 * step.box.radius
+                    return np.where(box > margin, box, np.maximum(box, np.minimum(value, 2.0 * margin - box)))
                 return np.maximum(value, box) if may_flatten(step) else value
             case Any():
                 return self._least([self._fold(s, p) for s in step.steps], p)

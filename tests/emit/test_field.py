@@ -91,6 +91,20 @@ def test_fields_change_no_faster_than_the_distance(scene: str, gl: moderngl.Cont
         assert (np.abs(made[0] - np.roll(made[0], shift)) - apart).max() <= 2e-6 * size
 
 
+@pytest.mark.parametrize("scene", SCENES if IS_FULL else SMALL)
+def test_fields_have_no_jumps(scene: str, gl: moderngl.Context, values: dict[str, Any]) -> None:
+    """No faster over short ways either, such as lead across the end of a part's box."""
+    points, made = asked(scene, gl, values)
+    size = float(np.ptp(points, axis=1).max())
+    random = np.random.default_rng(2)
+    ways = random.normal(size=points.shape) * 10.0 ** random.uniform(-4.0, -1.0, points.shape[1])
+    ends = (points + size * ways).astype(np.float32)
+    text = program(scene).glsl("glsl430", part="field", bake=True)
+    (there,) = run(gl, text, f"made[at] = {prefix_of(scene)}_sdf(p);", ends, 1)
+    apart = np.linalg.norm(ends.astype(np.float64) - points, axis=0)
+    assert (np.abs(there - made[0]) - apart).max() <= 2e-6 * size
+
+
 @pytest.mark.parametrize("scene", ["csg5.sdf", "die.sdf", "spheres.sdf", "bracket.sdf"])
 def test_gradients_are_those_of_the_field(scene: str, gl: moderngl.Context, values: dict[str, Any]) -> None:
     """By differences over a short way, where the field is smooth: nearly everywhere."""

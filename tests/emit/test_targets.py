@@ -222,7 +222,7 @@ def test_two_scenes_are_pasted_into_one_shader(target: str, part: str, tmp_path:
         calls += [f"{x}_trace(vec3(9.0), vec3(-1.0), 0.0, 99.0).t" for x in ("a", "b", "a_2")]
     main = f"layout(location = 0) out vec4 color;\nvoid main() {{ color = vec4({' + '.join(calls)}); }}\n"
     # in Vulkan every block of uniforms needs a place of its own, as the text says
-    bound = "".join(f"#define {x}_BINDING {i}\n" for i, x in enumerate(("A", "B", "A_2"))) if target == "vulkan" else ""
+    bound = "".join(f"#define {x}_BINDING {i}\n" for i, x in enumerate(("a", "b", "a_2"))) if target == "vulkan" else ""
     text = HEADS.get(target, HEADS["glsl330"]) + bound + "".join(texts) + main
     assert_valid({"both.frag": text}, target, tmp_path)
 

@@ -23,7 +23,7 @@ def copied(root: Expr) -> Expr:
     graph.constant(17.0)
     made: dict[int, Expr] = {}
     for node in topological([root]):
-        made[node.id] = graph._intern(node.op, node.type, tuple(made[a.id] for a in node.args), node.value)
+        made[node.id] = graph._new(node.op, node.type, tuple(made[a.id] for a in node.args), node.value)
     return made[root.id]
 
 

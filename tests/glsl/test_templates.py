@@ -1,5 +1,6 @@
 """Compiled templates between runs: kept, used, made again when damaged, done without when nothing can be written."""
 
+import hashlib
 from pathlib import Path
 
 import pytest
@@ -49,10 +50,24 @@ def test_a_damaged_one_is_made_again(folder: Path, kept_of_it: int) -> None:
     assert kept.read_bytes() == whole
 
 
+@pytest.mark.parametrize("place", [0, 40, 120, -1])
+def test_one_with_another_bit_is_made_again(folder: Path, place: int) -> None:
+    """Damaged bytecode would end the process, or print another text."""
+    rendered()
+    (kept,) = folder.iterdir()
+    whole = kept.read_bytes()
+    damaged = bytearray(whole)
+    damaged[place] ^= 1
+    kept.write_bytes(damaged)
+    assert rendered() == "2 + 1"
+    assert kept.read_bytes() == whole
+
+
 def test_code_that_another_user_left_is_not_run(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rendered()
     (kept,) = folder.iterdir()
-    kept.write_bytes(kept.read_bytes().replace(b" + 1", b" - 1"))
+    code = kept.read_bytes()[32:].replace(b" + 1", b" - 1")
+    kept.write_bytes(hashlib.sha256(code).digest() + code)
     assert rendered() == "2 - 1"
     monkeypatch.setattr("os.getuid", lambda: -1)
     assert rendered() == "2 + 1"

@@ -20,7 +20,7 @@ class Callbacks:
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    return tmp_path / "sdfc"
+    return tmp_path / "sdfc" / tables.KIND
 
 
 def parsed() -> object:
@@ -53,6 +53,17 @@ def test_damaged_tables_are_made_again(folder: Path, damage: bytes) -> None:
     kept.write_bytes(damage)
     assert parsed() == ("start", 2)
     assert len(kept.read_bytes()) > 100
+
+
+@pytest.mark.parametrize("place", [0, 40, 300, -1])
+def test_tables_with_one_other_bit_are_made_again(folder: Path, place: int) -> None:
+    parsed()
+    (kept,) = folder.iterdir()
+    damaged = bytearray(kept.read_bytes())
+    damaged[place] ^= 1
+    kept.write_bytes(damaged)
+    assert parsed() == ("start", 2)
+    assert kept.read_bytes() != bytes(damaged)
 
 
 def test_no_tables_are_kept_where_nothing_can_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -109,6 +109,17 @@ def test_the_default_of_a_param_is_one_at_once(author: Author, compiled: list[st
         author.save(BALLS.replace("size = 0.5", "size = 2"))
 
 
+@pytest.mark.parametrize("behind", ["\n", " // warm\n", "\nmaterial other { color: #112233 }\n"])
+def test_so_is_a_color(author: Author, compiled: list[str], behind: str) -> None:
+    text = f"param tone = #ff8800{behind}material m {{ color: tone }}\nscene {{ sphere(radius: 1).material(m) }}"
+    author.save(text)
+    assert author.save(text.replace("#ff8800", "#0088ff")).speed is Speed.NUMBERS
+    assert len(compiled) == 1
+    author.save(text.replace("#ff8800", "0.5 * #ff8800"))
+    edited = text.replace("#ff8800", "0.5 * #0088ff")
+    assert author.save(edited).speed is not Speed.NUMBERS, "more than one literal"
+
+
 def test_what_must_be_known_stays_baked(author: Author) -> None:
     """A loop's end: each edit is a new shader, and the picture is right."""
     author.save(BALLS)

@@ -14,7 +14,7 @@ def _in_a_block(items: list[Item], brief: Brief) -> list[Item]:
     free = [item for item in items if item.kind is Kind.UNIFORM and not any(o in item.type for o in _OPAQUE)]
     if not free:
         return items
-    place, stem = next(i for i, item in enumerate(items) if item is free[0]), brief.prefix.upper()
+    place, stem = next(i for i, item in enumerate(items) if item is free[0]), brief.prefix
     macros = [
         line
         for name, value in ((f"{stem}_SET", 0), (f"{stem}_BINDING", 1))

@@ -25,7 +25,7 @@ const float FAR = {{ far }};
 float sdf(vec3 p) { return RADIUS * map({{ own_p }}); }
 
 {% endif %}
-// Its gradient, of the part that is nearest: the normal, on the surface.
+// Its gradient, of the nearest part: along the normal near the surface.
 vec3 gradient(vec3 p) { return nearest({{ own_p }}).field.xyz; }
 
 // Which material is nearest.
