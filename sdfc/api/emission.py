@@ -118,7 +118,8 @@ def _made(program: Program, order: Order, tracer: str) -> str:
     (lx, ly, lz), (hx, hy, hz) = frame.box.lo, frame.box.hi
     names = ("eye", "axis_x", "axis_y", "axis_z", "window", "pixel")
     camera = {n: v for n in names if isinstance(v := uniforms[n], tuple)}
-    about = About((lx, ly, lz), (hx, hy, hz), frame.is_finite, _eye(compiled, order), camera, other)
+    eye = _eye(compiled, order)
+    about = About((lx, ly, lz), (hx, hy, hz), frame.is_finite, frame.is_of_parts, eye, camera, other)
     with deep_recursion():
         return emit(compiled.scene.values, compiled.plan, compiled.setting, order, about)
 

@@ -56,6 +56,7 @@ class About:
     low: Vector
     high: Vector
     is_finite: bool
+    has_box: bool
     eye: Eye
     uniforms: Mapping[str, Numbers]  # the camera's, at 1280 x 720
     other: Callable[[str, str], str]  # the same order for another target and stage
@@ -210,6 +211,7 @@ class _Emission(Assembly):
             low=about.low,
             high=about.high,
             is_finite=about.is_finite,
+            has_box=about.has_box,
             up=self._setting.up,
             eye=about.eye,
             is_baked=order.is_baked or self._target.is_baked,

@@ -57,6 +57,8 @@ def range_of(control: Control) -> str:
 
 
 def _place(brief: Brief) -> list[str]:
+    if not brief.has_box:
+        return ["It is empty, or has no end: nothing in it has a size."]
     all_ = "All of it lies" if brief.is_finite else "It has no end; its finite parts lie"
     return [f"{all_} in {numbers(brief.low)} .. {numbers(brief.high)}, in the scene's units."]
 

@@ -13,6 +13,7 @@ from sdfc.field.graph import Expr, FieldGraph
 from sdfc.shape.graph import Affine, Apply, Shape, ShapeGraph, children_of
 from sdfc.shape.matrix import Matrix, identity, scaling, translation
 
+_NOISE = 1e-12  # of its size: where a scene is centred but for rounding, shaders say so
 SMALLEST_RADIUS = 1e-100  # float64 still has the squares of what is scaled from it, and their inverses
 
 
@@ -24,6 +25,7 @@ class Frame:
     radius: float
     box: Box  # of the finite parts, in the author's coordinates
     is_finite: bool  # whether the box holds the whole scene
+    is_of_parts: bool = True  # else nothing finite has a size: the box is made up
 
 
 def frame_of(root: Shape, bounds: Bounds) -> Frame:
@@ -32,10 +34,10 @@ def frame_of(root: Shape, bounds: Bounds) -> Frame:
     box = whole if whole.is_finite else _finite_parts(root, bounds)
     if not box.is_finite or box.radius == 0.0:
         centre = box.centre if box.is_finite else (0.0, 0.0, 0.0)
-        return Frame((centre[0], centre[1], centre[2]), 1.0, Box((-1.0,) * 3, (1.0,) * 3), False)
+        return Frame((centre[0], centre[1], centre[2]), 1.0, Box((-1.0,) * 3, (1.0,) * 3), False, False)
     if box.radius < SMALLEST_RADIUS:
         raise scene_error(f"the scene is less than {SMALLEST_RADIUS:g} across", root.span, "give it sizes nearer to 1")
-    x, y, z = box.centre
+    x, y, z = [c if abs(c) > _NOISE * box.radius else 0.0 for c in box.centre]
     return Frame((x, y, z), box.radius, box, whole.is_finite)
 
 

@@ -30,7 +30,8 @@ def explain(scene: Scene, plan: Plan, frame: Frame) -> str:
     leaves = leaves_of(plan.root)
     closed = sum(isinstance(leaf, Closed) for leaf in leaves)
     centre = ", ".join(f"{c:g}" for c in frame.centre)
-    extent = "holds the whole scene" if frame.is_finite else "holds its finite parts; the scene itself has no end"
+    extent = "holds its finite parts; the scene itself has no end" if frame.is_of_parts else "nothing in it has a size"
+    extent = "holds the whole scene" if frame.is_finite else extent
     lines = [
         f"scene: {scene.source.name}",
         f"bounds: centre [{centre}], radius {frame.radius:g}: {extent}",

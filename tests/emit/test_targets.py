@@ -238,3 +238,10 @@ def test_a_material_may_be_computed_from_params(tmp_path: Path) -> None:
             "out vec4 c;\nvoid main() { c = vec4(m_properties(vec3(1.0)).color, m_properties(vec3(1.0)).roughness); }\n"
         )
         assert_valid({f"{part}.frag": f"#version 330 core\n{made}{main}"}, "glsl330", tmp_path)
+
+
+@pytest.mark.parametrize("scene", ["", "plane()"])
+def test_no_box_is_told_of_a_scene_without_one(scene: str) -> None:
+    text = compile_scene(f"scene {{ {scene} }}").glsl(part="field", prefix="s")
+    assert "// It is empty, or has no end: nothing in it has a size." in text
+    assert "lies in" not in text and "lie in" not in text

@@ -55,6 +55,7 @@ class Brief:
     low: Vector  # the box of the finite parts
     high: Vector
     is_finite: bool  # whether the box holds the whole scene
+    has_box: bool  # else there are no finite parts
     up: Vector
     eye: Eye
     is_baked: bool  # whether the params are constants of the text
