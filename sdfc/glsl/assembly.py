@@ -129,7 +129,7 @@ class Assembly:
         many = ManyWriter(self._graph, self._functions, self._live, plan.materials, plan.rows_at_once)
         if tracer.needs_steps and not self._is_cone:
             trace = ProvenWriter(self._graph, self._functions, self._live, many).write(plan.root)
-        map_text, occluder = self._maps(many)
+        map_text, occluder, occluder_is_limited = self._maps(many)
         spans = SpanWriter(self._graph, self._functions, self._live, plan.slopes, many)
         span_text = spans.write(plan.root) if tracer.needs_span and not self._is_cone else ""
         recorded = many if tracer.needs_steps else None
@@ -155,6 +155,7 @@ class Assembly:
             "needs_map_library": "within" in map_text or "box_distance" in map_text,
             "map": map_text,
             "occluder": occluder,
+            "occluder_is_limited": occluder_is_limited,
             "map_span": span_text,
             "tables": "\n".join(many.tables),
             "trace": trace,
@@ -174,25 +175,27 @@ class Assembly:
         context["live_lines"] = self._live_lines()
         return context
 
-    def _maps(self, many: ManyWriter) -> tuple[str, str]:
-        """The distances that are asked for, and the name of the one that tells how open the sky is."""
+    def _maps(self, many: ManyWriter) -> tuple[str, str, bool]:
+        """The distances that are asked for, the name of the one that tells how open the sky is, and whether that takes
+        a limit besides the point."""
         plan = self._plan
         texts: dict[str, str] = {}
 
-        def write(root: Step, name: str, traced: bool) -> None:
+        def write(root: Step, name: str, traced: bool) -> bool:
             writer = DistanceWriter(
                 self._graph, self._functions, self._live, plan.slopes, many, traced, self._has_field
             )
             texts[name] = writer.write(root, name)
+            return writer.is_limited
 
         if plan.tracer.needs_map or self._is_cone or self._has_field:
             write(plan.swept if self._is_cone else plan.root, "map", True)
         if not self._lit or plan.is_convex:
-            return "".join(texts.values()), ""
-        write(plan.root, "openness_map" if texts else "map", False)
+            return "".join(texts.values()), "", False
+        is_limited = write(plan.root, "openness_map" if texts else "map", False)
         if texts.get("openness_map") == texts["map"].replace("float map(", "float openness_map("):
             del texts["openness_map"]
-        return "\n".join(texts.values()), [*texts][-1]
+        return "\n".join(texts.values()), [*texts][-1], is_limited
 
     def _camera(self, stage: str) -> dict[str, object]:
         """A shader that stands alone reads its camera from uniforms; ours come with a vertex stage that is cheaper."""

@@ -20,7 +20,8 @@ class DistanceWriter:
     """Writes one scene's distance, as a chain of statements, one a part.
 
     Where it only tells how open the sky is, a part whose value means something only in its box is ignored outside:
-    the distance to that box, though a bound, would show as a shadow of the box.
+    the distance to that box, though a bound, would show as a shadow of the box. What is farther than the height that is
+    asked about hides nothing: of a table, only the groups that are nearer are looked through.
     """
 
     def __init__(
@@ -38,6 +39,7 @@ class DistanceWriter:
         self._live = live
         self._many = many
         self._traced = traced
+        self.is_limited = False  # whether the function is told, besides, how near a part must be to count
         self._within_box = "within_steadily" if is_steady else "within"  # others march it: no jumps
         self._slopes = slopes  # the Lipschitz constant of each part's formula, by id
 
@@ -46,7 +48,8 @@ class DistanceWriter:
         operations = Operations("float", "FAR", "min", "max", self._value, self._least, self._within)
         result = Fold(operations).text(root, body)
         body.give(result)
-        return "\n".join([f"float {name}(vec3 p) {{", *body.written(), "}", ""])
+        limit = ", float limit" if self.is_limited else ""
+        return "\n".join([f"float {name}(vec3 p{limit}) {{", *body.written(), "}", ""])
 
     def _value(self, part: Part, body: Body, inside: bool) -> str:
         if not math.isfinite(self._slopes[id(part)]):
@@ -59,7 +62,8 @@ class DistanceWriter:
         return text if inside else f"-{text}" if "*" not in text else f"-({text})"
 
     def _least(self, step: Many, body: Body, name: str) -> str:
-        self._many.value(step, body, name)
+        self.is_limited = not self._traced
+        self._many.value(step, body, name, "limit" if self.is_limited else "FAR")
         return name
 
     def _within(self, step: Within, inner: str) -> str:

@@ -105,10 +105,10 @@ class ManyWriter:
         statement = f"{record.meet}(o, d, start, first, {{at}}{{values}}, {{material}});"
         self.loop(many, body, statement, "enter(box_interval(o - {centre}, d, {half}), start) < first")
 
-    def value(self, many: Many, body: Body, name: str) -> None:
-        """The least of the members' formulas at p, into a new variable."""
+    def value(self, many: Many, body: Body, name: str, limit: str = "FAR") -> None:
+        """The least of the members' formulas at p, into a new variable; what is farther than the limit is not met."""
         call = self._functions.of_part(many.members[0].part, Role.VALUE)
-        body.add(f"float {name} = FAR;")
+        body.add(f"float {name} = {limit};")
         statement = f"{name} = min({name}, {call.name}(p - {{at}}{{values}}));"
         self.loop(many, body, statement, f"box_distance(p - {{centre}}, {{half}}) < {name}")
 

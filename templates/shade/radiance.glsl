@@ -29,7 +29,7 @@ float openness(vec3 p, vec3 normal) {
     vec4 heights = {{ occlusion_heights }}, left = heights, distances = vec4(0.0);
     int taps = 0;
     do {
-        distances = vec4(distances.yzw, {{ occluder }}(p + left.x * normal));
+        distances = vec4(distances.yzw, {{ occluder }}(p + left.x * normal{{ ", left.x" if occluder_is_limited }}));
         left = left.yzwx;
         taps += 1;
     } while (taps < 4);

@@ -181,8 +181,8 @@ const vec4 sphere_boxes[8] = vec4[](
     vec4(0.02609903, 0.12669668, 0.02609903, 0.0)
 );
 
-float map(vec3 p) {
-    float d2 = FAR;
+float map(vec3 p, float limit) {
+    float d2 = limit;
     int sphere_table_group = 0;
     do {
         int sphere_table_row = 16 * sphere_table_group;
@@ -398,7 +398,7 @@ float openness(vec3 p, vec3 normal) {
     vec4 heights = vec4(0.012, 0.045, 0.11, 0.22), left = heights, distances = vec4(0.0);
     int taps = 0;
     do {
-        distances = vec4(distances.yzw, map(p + left.x * normal));
+        distances = vec4(distances.yzw, map(p + left.x * normal, left.x));
         left = left.yzwx;
         taps += 1;
     } while (taps < 4);

@@ -138,3 +138,9 @@ def test_the_sun_is_a_small_disc(direction: np.ndarray, toward: np.ndarray) -> N
     if direction @ toward < np.cos(np.radians(3.0)):
         assert share < 0.02
     assert float(np.ravel(run("sun_disc", direction=toward, toward=toward))[0]) == 1.0
+
+
+@given(distances=st.tuples(*[st.floats(-1e3, 1e9)] * 4).map(np.array))
+def test_nothing_farther_than_a_tap_is_high_hides_anything(distances: np.ndarray) -> None:
+    """So the parts of a table that are farther need not be met."""
+    assert openness(np.minimum(distances, HEIGHTS)) == openness(distances)
