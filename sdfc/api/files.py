@@ -27,13 +27,13 @@ def check_files(output: Path, aovs: Iterable[str], aov_format: str) -> None:
         check_writable(path)
 
 
-def write_files(image: Image, output: Path, aov_format: str) -> list[Path]:
-    """Write the picture and its other images, all whole or none; returns what was written."""
+def write_files(image: Image, output: Path, aov_format: str, quick: bool = False) -> list[Path]:
+    """Write the picture and its other images, all whole or none; returns what was written. `quick`: as Image.encode."""
     if output == STDOUT:
         sys.stdout.buffer.write(image.encode("png"))
         sys.stdout.buffer.flush()
         return [output]
-    files = {output: image.encode(_picture_format(output))}
+    files = {output: image.encode(_picture_format(output), quick)}
     for name in image.aovs:
         files[aov_path(output, name, aov_format)] = image.encode_aov(name, aov_format)
     write_all(files)

@@ -76,12 +76,15 @@ class Image:
 
         return present(self.colour)
 
-    def encode(self, file_format: str) -> bytes:
-        """The picture as a file: `png` as a screen shows it, `exr` and `npy` as linear radiance."""
+    def encode(self, file_format: str, quick: bool = False) -> bytes:
+        """The picture as a file: `png` as a screen shows it, `exr` and `npy` as linear radiance.
+
+        `quick` for a file that is soon replaced: it may be larger.
+        """
         from sdfc.image import exr, npy, png
 
         if file_format == "png":
-            return png.encode(self.pixels)
+            return png.encode(self.pixels, png.QUICK if quick else png.SMALL)
         if file_format == "exr":
             return exr.encode({name: self.colour[..., index] for index, name in enumerate("RGB")})
         if file_format == "npy":

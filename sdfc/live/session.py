@@ -139,7 +139,7 @@ class Session:
     def _write(self, output: Path, shown: Shown, watch: Stopwatch) -> None:
         image = self._painter.draw(self._shot(shown))
         watch.took("drawing")
-        write_files(image, output, "npy")
+        write_files(image, output, "npy", quick=True)
         watch.took("writing")
 
     def _shot(self, shown: Shown) -> Shot:
