@@ -167,7 +167,7 @@ class Pages:
             shot = _shot(self._shown, wish)
             if not painter.is_ready(shot):
                 return ()
-            picture = painter.draw(shot, lambda: is_needed() or guest.wish is None).encode("png")
+            picture = painter.draw(shot, lambda: is_needed() or guest.wish is None).encode("png", quick=True)
         except StoppedError:
             raise
         except Exception as error:  # its fault, the device's, or a bug in sdfc: the watch goes on

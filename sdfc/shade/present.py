@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -15,10 +16,20 @@ if TYPE_CHECKING:
 
     from sdfc.field.numeric import Evaluator
 
+_WORTH_TWO = 200_000  # numbers: fewer are done before a second thread is
+
 
 def present(radiance: NDArray[np.floating]) -> NDArray[np.uint8]:
     """Tone mapped, sRGB, uint8 (height, width, 3), of linear radiance (height, width, 3)."""
-    color = np.asarray(radiance, np.float32).reshape(-1, 3).T
+    rows = np.asarray(radiance, np.float32)
+    if rows.size < _WORTH_TWO:
+        return _presented(rows)
+    with ThreadPoolExecutor(2) as both:  # NumPy lets go of the interpreter while it computes
+        return np.concatenate(list(both.map(_presented, np.array_split(rows, 2))))
+
+
+def _presented(radiance: NDArray[np.float32]) -> NDArray[np.uint8]:
+    color = radiance.reshape(-1, 3).T
     for evaluator in _evaluators():
         (color,) = evaluator({"color": color})
     encoded = np.nan_to_num(color).T.reshape(radiance.shape)
