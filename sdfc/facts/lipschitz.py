@@ -24,7 +24,6 @@ from sdfc.shape.graph import (
     Paint,
     Shape,
     Union,
-    children_of,
     topological,
 )
 from sdfc.shape.lower import lower
@@ -84,7 +83,7 @@ class Lipschitz:
         return self._everywhere[shape.id]
 
     def _claimed_by_all(self, node: Shape) -> float | None:
-        below = [self._everywhere[c.id] for c in children_of(node)]
+        below = [self._everywhere[c.id] for c in node.children]
         slopes = [slope for slope in below if slope is not None]
         if len(slopes) < len(below):
             return None
@@ -137,7 +136,7 @@ class Lipschitz:
             case Affine():
                 return self._over(shape.child, self._bounds.moved(shape.inverse, region))
             case Union() | Intersection() | Complement() | Paint():
-                return max([self._over(c, region) for c in children_of(shape)])
+                return max([self._over(c, region) for c in shape.children])
             case Nothing():
                 return 1.0  # any will do; one can be divided by
             case _:

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sdfc.field import interval_rules as rules
+from sdfc.field.cells import Cells
 from sdfc.field.core import DEEP
 from sdfc.field.graph import Expr, Op, topological
-from sdfc.field.interval import halves
 from sdfc.field.interval_bends import BENDS, Bend, everything_where, moving
 from sdfc.field.interval_rules import RULES, Array, Interval
 from sdfc.field.interval_slopes import SLOPES, Slope
@@ -102,13 +102,13 @@ def bend_bounds(
 
     def search() -> list[float]:
         evaluator = BendEvaluator(root, convex)
-        cells = _Cells(evaluator, pieces, np.array(lo, float), np.array(hi, float), _anywhere())
+        cells = _Cells(evaluator, pieces, lo, hi, _anywhere())
         if not np.isfinite(cells.bounds).any() and cells.is_vain():
             return [np.inf] * len(pieces)
         while cells.seen < boxes and not np.isfinite(cells.bounds).all():
             cells.cut()
         if np.isfinite(cells.bounds).all():  # it is worth the dearer look, by directions
-            cells = _Cells(evaluator, pieces, np.array(lo, float), np.array(hi, float), _directions())
+            cells = _Cells(evaluator, pieces, lo, hi, _directions())
             before = np.full(len(pieces), np.inf)
             while cells.seen < boxes and (cells.worst() < _GAIN * before).any():
                 before = cells.worst()
@@ -127,65 +127,52 @@ def _formulas(root: Expr, convex: Mapping[int, tuple[Expr, float]]) -> Hashable:
     return fingerprint([root, *(e for node, point, _ in known for e in (node, point))]), tuple(s for _, _, s in known)
 
 
-class _Cells:
-    """Boxes of points, each for one piece of the params' ranges, and how hard the root may bend down in each."""
+class _Cells(Cells):
+    """With how hard the root may bend down in each."""
 
     def __init__(
         self,
         evaluator: BendEvaluator,
         pieces: Sequence[Mapping[str, tuple[Sequence[float], Sequence[float]]]],
-        lo: Array,
-        hi: Array,
+        lo: Sequence[float],
+        hi: Sequence[float],
         cells: Interval,
     ) -> None:
         self._evaluator = evaluator
         self._cells = cells
-        count = len(pieces)
         self._params = {
             name: tuple(np.stack([np.ravel(np.asarray(piece[name][end], float)) for piece in pieces]) for end in (0, 1))
             for name in pieces[0]
         }
-        self._lo, self._hi = (np.repeat(end[:, None], count, axis=1) for end in (lo, hi))
-        self._owner = np.arange(count)
-        self._count = count
-        self.bounds = self._bend(self._lo, self._hi, self._owner)
-        self.seen = count
+        self._count = len(pieces)
+        super().__init__(lo, hi, self._count)
 
     def worst(self) -> Array:
         """For each piece, (pieces,)."""
         result = np.zeros(self._count)
-        np.maximum.at(result, self._owner, self.bounds)
+        np.maximum.at(result, self.owner, self.bounds)
         return result
 
     def cut(self) -> None:
         """Halves the worst boxes of each piece."""
-        limit = 0.7 * self.worst()[self._owner]
+        limit = 0.7 * self.worst()[self.owner]
         bad = np.flatnonzero((self.bounds >= limit) & (self.bounds > 0.0))
         if not bad.size:
             return
         bad = bad[np.argsort(-self.bounds[bad], kind="stable")][: max(AT_ONCE, 2 * self._count)]
-        lo, hi = halves(self._lo[:, bad], self._hi[:, bad])
-        owner = np.tile(self._owner[bad], 2)
-        fresh = np.minimum(self._bend(lo, hi, owner), np.tile(self.bounds[bad], 2))
-        keep = np.setdiff1d(np.arange(self.bounds.size), bad)
-        self._lo, self._hi = (
-            np.concatenate([old[:, keep], new], axis=1) for old, new in ((self._lo, lo), (self._hi, hi))
-        )
-        self._owner = np.concatenate([self._owner[keep], owner])
-        self.bounds = np.concatenate([self.bounds[keep], fresh])
-        self.seen += fresh.size
+        self.halve(bad)
 
     def is_vain(self) -> bool:
         """Whether all are infinite right beside the middle, where the hub of a ring is: however boxes are cut, one of
         them keeps that."""
-        sides = np.array(list(itertools.product((-1.0, 1.0), repeat=self._lo.shape[0]))).T
-        middle, near = 0.5 * (self._lo + self._hi), _NEAR * (self._hi - self._lo)
+        sides = np.array(list(itertools.product((-1.0, 1.0), repeat=self.lo.shape[0]))).T
+        middle, near = 0.5 * (self.lo + self.hi), _NEAR * (self.hi - self.lo)
         ends = middle[:, :, None], (middle[:, :, None] + near[:, :, None] * sides[:, None, :])
-        lo, hi = (pick(*ends).reshape(self._lo.shape[0], -1) for pick in (np.minimum, np.maximum))
-        found = self._bend(lo, hi, np.repeat(self._owner, sides.shape[1]))
+        lo, hi = (pick(*ends).reshape(self.lo.shape[0], -1) for pick in (np.minimum, np.maximum))
+        found = self.bound(lo, hi, np.repeat(self.owner, sides.shape[1]))
         return bool(np.isinf(found).reshape(self._count, -1).any(axis=1).all())
 
-    def _bend(self, lo: Array, hi: Array, owner: NDArray[np.int64]) -> Array:
+    def bound(self, lo: Array, hi: Array, owner: NDArray[np.int64]) -> Array:
         each, count = self._cells.lo.shape[1], lo.shape[1]
         box = Interval(np.repeat(lo, each, axis=1), np.repeat(hi, each, axis=1))
         params = {

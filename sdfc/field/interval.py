@@ -321,17 +321,3 @@ def _points_on_rays(o: Array, d: Array, t: Interval) -> Interval:
     """o + t d over each segment: (k, n)."""
     with np.errstate(all="ignore"):
         return added(Interval(o, o), multiplied(Interval(t.lo, t.lo) if t.lo is t.hi else t, Interval(d, d)))
-
-
-def halves(lo: Array, hi: Array) -> tuple[Array, Array]:
-    """Both halves of each box (k, n) -> (k, 2 n), cut across its widest side; an infinite one at 0 or doubled."""
-    axis = np.argmax(hi - lo, axis=0)
-    column = np.arange(lo.shape[1])
-    a, b = lo[axis, column], hi[axis, column]
-    with np.errstate(invalid="ignore"):
-        cut = np.where(np.isfinite(a) & np.isfinite(b), a + 0.5 * (b - a), 0.0)
-    cut = np.where(np.isfinite(a) & np.isinf(b), np.maximum(2.0 * np.abs(a), 1.0), cut)
-    cut = np.where(np.isinf(a) & np.isfinite(b), -np.maximum(2.0 * np.abs(b), 1.0), cut)
-    first_hi, second_lo = hi.copy(), lo.copy()
-    first_hi[axis, column], second_lo[axis, column] = cut, cut
-    return np.concatenate([lo, second_lo], axis=1), np.concatenate([first_hi, hi], axis=1)

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sdfc.field.cells import Cells
 from sdfc.field.graph import Expr, Op, topological
-from sdfc.field.interval import IntervalEvaluator, Parameters, halves
+from sdfc.field.interval import IntervalEvaluator, Parameters
 from sdfc.field.interval_rules import EPSILON, Array, Interval
 from sdfc.field.memory import MEMORY, fingerprint, params_fingerprint
 
@@ -43,39 +44,24 @@ def gradient_bound(
     return MEMORY.recall(("steepest", fingerprint([root]), tuple(lo), tuple(hi), ranges, boxes), search)
 
 
-class _Cells:
-    """Boxes of points, each for one piece of the params' ranges, with a bound of |grad root| in each."""
+class _Cells(Cells):
+    """With a bound of |grad root| in each."""
 
     def __init__(self, root: Expr, lo: Sequence[float], hi: Sequence[float], pieces: Sequence[Parameters]) -> None:
         self._evaluator = IntervalEvaluator(root)
         self._params = _ranges(root, pieces)
         self._directions, self._cosine = _cover(len(lo))
-        self._low, self._high = (np.repeat(np.array(end, float)[:, None], len(pieces), axis=1) for end in (lo, hi))
-        self._owner = np.arange(len(pieces))
         self.attained = 0.0  # what |grad| is somewhere
-        self.bounds = self._bounds(self._low, self._high, self._owner)
-        self.seen = len(pieces)
+        super().__init__(lo, hi, len(pieces))
 
     def cut(self, most: int) -> None:
         """Halves the worst boxes, no more than `most`."""
-        bounds = self.bounds
-        worst = np.argsort(bounds)[::-1][:most]
-        largest = bounds.max()
-        is_worst = bounds[worst] >= 0.98 * largest if np.isfinite(largest) else ~np.isfinite(bounds[worst])
-        worst = worst[is_worst]
-        low, high = halves(self._low[:, worst], self._high[:, worst])
-        owner = np.tile(self._owner[worst], 2)
-        parts = np.minimum(self._bounds(low, high, owner), np.tile(bounds[worst], 2))  # no worse than the whole
-        keep = np.setdiff1d(np.arange(bounds.size), worst)
-        self._low, self._high = (
-            np.concatenate([self._low[:, keep], low], 1),
-            np.concatenate([self._high[:, keep], high], 1),
-        )
-        self._owner = np.concatenate([self._owner[keep], owner])
-        self.bounds = np.concatenate([bounds[keep], parts])
-        self.seen += parts.size
+        worst = np.argsort(self.bounds)[::-1][:most]
+        largest = self.bounds.max()
+        bounds = self.bounds[worst]
+        self.halve(worst[bounds >= 0.98 * largest if np.isfinite(largest) else ~np.isfinite(bounds)])
 
-    def _bounds(self, lo: Array, hi: Array, owner: NDArray[np.int64]) -> Array:
+    def bound(self, lo: Array, hi: Array, owner: NDArray[np.int64]) -> Array:
         """An upper bound of |grad| over each box; notes the largest that is attained in one of them."""
         size, count = lo.shape
         each = self._directions.shape[1]

@@ -112,8 +112,10 @@ class Body:
                 if word in users:
                     users[word].append(number)
         lines, gone = list(self.lines), set()
+        declarations = {numbers[0] for numbers in users.values()}
         for name, text in self._points.items():
-            if len(users[name]) != 2:
+            # where another point is made of it, that may be written elsewhere itself
+            if len(users[name]) != 2 or users[name][1] in declarations:
                 continue
             declared, used = users[name]
             for before, after in _ARGUMENT:

@@ -10,7 +10,7 @@ _PLAIN = LEAVES | {Op.SWIZZLE, Op.NEG}  # the text of it is as good as a local
 
 
 def gathered(order: Sequence[Expr], uses: Mapping[Expr, int], called: Container[Expr]) -> dict[Expr, Expr | None]:
-    """By their ids, the nodes whose local a vector is: for the last component in the order that vector, else None.
+    """The nodes whose local a vector is: for the last component in the order that vector, else None.
 
     Each component is used more than once, and none before the last of them is there. None is `called` something.
     """

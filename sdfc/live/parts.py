@@ -12,7 +12,7 @@ from sdfc.facts.pointwise import is_pointwise
 from sdfc.facts.ranges import Range, Ranges
 from sdfc.field.graph import Expr
 from sdfc.pipeline import Compiled
-from sdfc.shape.graph import Affine, Apply, Shape, children_of
+from sdfc.shape.graph import Affine, Apply, Shape
 from sdfc.shape.matrix import Matrix, identity
 
 MOST_PARTS = 400
@@ -69,7 +69,7 @@ def _parts(root: Shape, bounds: Bounds) -> Iterator[Part]:
                 if box.is_finite:
                     yield Part(_name(shape), box)
             case _:
-                stack.extend((child, forward) for child in reversed(children_of(shape)))
+                stack.extend((child, forward) for child in reversed(shape.children))
 
 
 def _is_seen_through(shape: Apply, bounds: Bounds) -> bool:
@@ -81,7 +81,7 @@ def _name(shape: Apply) -> str:
     """`box, die.sdf:35`: what it is made of, where that is one thing, and where it is written."""
     inner: Shape = shape
     named = shape
-    while len(children := children_of(inner)) == 1 and children[0].dimension == shape.dimension:
+    while len(children := inner.children) == 1 and children[0].dimension == shape.dimension:
         inner = children[0]
         if isinstance(inner, Apply):
             named = inner

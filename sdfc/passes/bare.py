@@ -9,7 +9,7 @@ from sdfc.field.core import same_zeros
 from sdfc.field.graph import Expr, FieldGraph, Type
 from sdfc.passes.rewrite import descend
 from sdfc.shape.definition import Definition, Distance, Environment
-from sdfc.shape.graph import Apply, Shape, ShapeGraph, children_of, definitions_of
+from sdfc.shape.graph import Apply, Shape, ShapeGraph, definitions_of
 
 
 def bare(root: Shape, graph: ShapeGraph, values: FieldGraph) -> Shape:
@@ -23,7 +23,7 @@ def bare(root: Shape, graph: ShapeGraph, values: FieldGraph) -> Shape:
     made: dict[int, Definition] = {}
 
     def below(shape: Shape, _: None) -> list[tuple[Shape, None]]:
-        return [] if _is_operation(shape) else [(child, None) for child in children_of(shape)]
+        return [] if _is_operation(shape) else [(child, None) for child in shape.children]
 
     def make(shape: Shape, _: None, children: tuple[Shape, ...]) -> Shape:
         match shape:

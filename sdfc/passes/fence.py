@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sdfc.facts.bounds import Bounds, child_facts
 from sdfc.passes.rewrite import descend
-from sdfc.shape.graph import Apply, Shape, ShapeGraph, children_of, definitions_of
+from sdfc.shape.graph import Apply, Shape, ShapeGraph, definitions_of
 
 
 def fence(root: Shape, graph: ShapeGraph, bounds: Bounds) -> Shape:
@@ -17,7 +17,7 @@ def fence(root: Shape, graph: ShapeGraph, bounds: Bounds) -> Shape:
         return root
 
     def below(shape: Shape, is_operand: bool) -> list[tuple[Shape, bool]]:
-        return [(child, is_operand or isinstance(shape, Apply)) for child in children_of(shape)]
+        return [(child, is_operand or isinstance(shape, Apply)) for child in shape.children]
 
     def make(shape: Shape, is_operand: bool, children: tuple[Shape, ...]) -> Shape:
         kept = graph.with_children(shape, children)

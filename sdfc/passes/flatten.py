@@ -15,7 +15,6 @@ from sdfc.shape.graph import (
     Shape,
     ShapeGraph,
     Union,
-    children_of,
     topological,
 )
 
@@ -40,7 +39,7 @@ def _needed(root: Shape) -> set[int]:
             case Union() | Intersection():
                 needed.update(c.id for c in shape.children if type(c) is not type(shape))
             case _:
-                needed.update(c.id for c in children_of(shape))
+                needed.update(c.id for c in shape.children)
     return needed
 
 

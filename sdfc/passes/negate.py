@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from sdfc.passes.rewrite import descend
 from sdfc.shape.definition import Definition
-from sdfc.shape.graph import Apply, Complement, Intersection, Shape, ShapeGraph, Union, children_of
+from sdfc.shape.graph import Apply, Complement, Intersection, Shape, ShapeGraph, Union
 
 Lookup = Callable[[str], Definition | None]
 
@@ -23,7 +23,7 @@ def negate(root: Shape, graph: ShapeGraph, definition: Lookup) -> Shape:
                 return [(c, negative) for c in shape.children]
             case _:
                 inner = negative and _dual(shape, definition) is not None
-                return [(c, inner) for c in children_of(shape)]
+                return [(c, inner) for c in shape.children]
 
     def make(shape: Shape, negative: bool, children: tuple[Shape, ...]) -> Shape:
         match shape:

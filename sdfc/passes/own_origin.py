@@ -10,7 +10,7 @@ from sdfc.facts.bounds import Bounds
 from sdfc.facts.box import Box, nothing
 from sdfc.facts.pointwise import is_pointwise
 from sdfc.field.graph import Expr, FieldGraph
-from sdfc.shape.graph import Affine, Apply, Shape, ShapeGraph, children_of
+from sdfc.shape.graph import Affine, Apply, Shape, ShapeGraph
 from sdfc.shape.matrix import Matrix, identity, scaling, translation
 
 _NOISE = 1e-12  # of its size: where a scene is centred but for rounding, shaders say so
@@ -77,5 +77,5 @@ def _finite_parts(root: Shape, bounds: Bounds) -> Box:
             case Apply() if not is_pointwise(shape, bounds.values):
                 pass  # an operation may move its children anywhere
             case _:
-                stack.extend((c, forward) for c in children_of(shape))
+                stack.extend((c, forward) for c in shape.children)
     return result

@@ -15,7 +15,6 @@ from sdfc.shape.graph import (
     Shape,
     ShapeGraph,
     Union,
-    children_of,
     topological,
 )
 from sdfc.shape.material import Material
@@ -37,7 +36,7 @@ def paint(root: Shape, graph: ShapeGraph) -> Shape:
                 cut = first[shape.children[0].id] or material
                 return [(shape.children[0], material), *((c, cut) for c in shape.children[1:])]
             case Apply() | Union() | Affine() | Complement() | Nothing():
-                return [(c, material) for c in children_of(shape)]
+                return [(c, material) for c in shape.children]
             case _:
                 assert_never(shape)
 
@@ -61,6 +60,6 @@ def _first_materials(root: Shape) -> dict[int, Material | None]:
             case Paint():
                 first[shape.id] = shape.material
             case _:
-                found = (first[c.id] for c in children_of(shape))
+                found = (first[c.id] for c in shape.children)
                 first[shape.id] = next((m for m in found if m is not None), None)
     return first

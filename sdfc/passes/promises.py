@@ -16,7 +16,6 @@ from sdfc.shape.graph import (
     Paint,
     Shape,
     Union,
-    children_of,
     topological,
 )
 from sdfc.shape.stretch import is_similarity, smallest_stretch
@@ -119,7 +118,7 @@ def pruned(root: Shape, bounds: Bounds) -> Iterator[str]:
                 yield from (f"{cut.span} cuts nothing" for cut in cuts if bounds.box(cut).meet(box).is_empty)
                 stack.extend(node.children)
             case Union() | Paint() | Affine():
-                stack.extend(children_of(node))
+                stack.extend(node.children)
             case _:
                 pass
 

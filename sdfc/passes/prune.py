@@ -18,7 +18,6 @@ from sdfc.shape.graph import (
     Shape,
     ShapeGraph,
     Union,
-    children_of,
 )
 
 # blends that are plain unions where their operands differ by the width or more (ALGORITHMS C2)
@@ -49,7 +48,7 @@ class _Pruner:
         self._bounds = bounds
 
     def below(self, shape: Shape, reach: _Reach | None) -> list[tuple[Shape, _Reach | None]]:
-        return [(c, self._handed_down(shape, reach)) for c in children_of(shape)]
+        return [(c, self._handed_down(shape, reach)) for c in shape.children]
 
     def _handed_down(self, shape: Shape, reach: _Reach | None) -> _Reach | None:
         """How far the children's values matter; None where nothing is known of it."""

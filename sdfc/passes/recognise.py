@@ -24,7 +24,6 @@ from sdfc.shape.graph import (
     Shape,
     ShapeGraph,
     Union,
-    children_of,
     definitions_of,
     topological,
 )
@@ -67,7 +66,7 @@ class Maker:
             case Complement() if height is not None:
                 return [self._longer(shape, height)]
             case _:
-                return [(c, height) for c in children_of(shape)]
+                return [(c, height) for c in shape.children]
 
     def made(self, shape: Shape, height: Expr | None, parts: tuple[Shape, ...]) -> Shape:
         if height is not None:

@@ -42,7 +42,6 @@ from sdfc.shape.graph import (
     Paint,
     Shape,
     Union,
-    children_of,
     topological,
 )
 from sdfc.shape.lower import generic, lower_ray
@@ -326,7 +325,7 @@ def _has_bare_part(shape: Shape) -> bool:
         node = waiting.pop()
         if node.id not in seen and not isinstance(node, Paint):
             seen.add(node.id)
-            waiting += children_of(node)
+            waiting += node.children
             if isinstance(node, Apply) and node.definition.is_primitive:
                 return True
     return False

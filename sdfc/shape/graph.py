@@ -78,10 +78,6 @@ Shape: TypeAlias = Apply | Affine | Union | Intersection | Complement | Paint | 
 Combination = TypeVar("Combination", Union, Intersection)
 
 
-def children_of(shape: Shape) -> tuple[Shape, ...]:
-    return shape.children
-
-
 class ShapeGraph:
     """All shapes of one compilation; equal shapes are one node."""
 
@@ -233,7 +229,6 @@ __all__ = [
     "Shape",
     "ShapeGraph",
     "Union",
-    "children_of",
     "definitions_of",
     "topological",
 ]

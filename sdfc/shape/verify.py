@@ -8,7 +8,7 @@ from typing import assert_never
 from sdfc.diagnostics import InternalError
 from sdfc.field.graph import Expr, Op, topological
 from sdfc.shape.definition import Argument, Kind, Parameter
-from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union, children_of
+from sdfc.shape.graph import Affine, Apply, Complement, Intersection, Nothing, Paint, Shape, Union
 from sdfc.shape.graph import topological as shapes_below
 
 _COMPONENTS = {
@@ -58,7 +58,7 @@ def _faults(node: Shape) -> Iterator[str]:
 
 
 def _dimension_faults(node: Shape) -> Iterator[str]:
-    for child in children_of(node):
+    for child in node.children:
         if child.dimension != node.dimension:
             yield f"a child of {child.dimension} dimensions in a node of {node.dimension}"
 

@@ -16,7 +16,6 @@ from sdfc.diagnostics import InternalError
 from sdfc.measure import truth as module
 from sdfc.measure.truth import Proof, Truth
 from sdfc.reference.certify import Certificate, Status
-from sdfc.shape.graph import children_of
 
 CONE = (0.0, 5e-3)  # half a pixel of a picture a hundred pixels high
 CUT = "scene { box(size: [1.2, 1, 0.9]) - sphere(radius: 0.5) - cylinder(radius: 0.2, height: 3) }"
@@ -63,7 +62,7 @@ def test_both_proofs_agree_on_random_hard_csg(tree: str, seed: int) -> None:
 
 def test_a_pass_that_changes_the_solid_is_found_and_the_ray_named() -> None:
     compiled = compiled_text(CUT)
-    *kept, _ = children_of(compiled.shape)
+    *kept, _ = compiled.shape.children
     wrong = replace(compiled, shape=compiled.scene.shapes.intersection(kept, compiled.shape.span))
     with pytest.raises(InternalError, match=r"disagree about \d+ of 300 rays, first about ray \d+, from \[.*closed"):
         truth_of(wrong, rays(), CONE, cache=False)
